@@ -1,0 +1,235 @@
+//! Dye binds: one way, in fibre only, up to what the isotherm and the fibre allow (paper D §4.2b,
+//! eqs 6–8; model section 4).
+//!
+//! Each step binds ΔA = clamp( (D_ab·Δt/Δd²)·φ, 0, A_lim − A ) with A_lim = min(V_d, A_d(φ)).
+
+use bevy::prelude::*;
+use rayon::prelude::*;
+
+use crate::cloth::Cloth;
+use crate::diffusion::{Conductances, FreeDye};
+use crate::scenario::{AdsorptionSpec, Isotherm, Scenario};
+use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, TheExperiment};
+
+/// Adsorption of dye by fibre.
+pub struct AdsorptionPlugin;
+
+impl Plugin for AdsorptionPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
+            .add_systems(
+                DyeStep,
+                adsorption
+                    .in_set(DyeSet::Adsorption)
+                    .run_if(|experiment: Res<TheExperiment>| {
+                        experiment.scenario.adsorption.is_some()
+                    }),
+            );
+    }
+}
+
+/// Bound dye A in every cell, as a share of its volume, `(layer, y, x)`. Empty in a cloth that
+/// binds none.
+#[derive(Resource, Debug, Clone, PartialEq, Default)]
+pub struct BoundDye {
+    /// The amounts.
+    pub amount: Vec<f32>,
+}
+
+impl BoundDye {
+    /// The bound dye in the whole cloth, in cell volumes.
+    pub fn total(&self) -> f64 {
+        self.amount.iter().map(|a| f64::from(*a)).sum()
+    }
+
+    /// The bound dye of one cell.
+    pub fn at(&self, i: usize) -> f32 {
+        self.amount.get(i).copied().unwrap_or(0.0)
+    }
+}
+
+/// D_ab·Δt/Δd²: the share of its free dye that a cell may bind in one whole step.
+pub(crate) fn share_a_step(spec: &AdsorptionSpec, scenario: &Scenario) -> f64 {
+    let d_ab = spec.rate * scenario.dye.diffusivity.in_water();
+    d_ab * scenario.process.step_h / (scenario.cloth.cell_mm * scenario.cloth.cell_mm)
+}
+
+impl Isotherm {
+    /// A_d(φ): the most that fibre with bound capacity `v_d` binds beside φ of free dye.
+    #[inline(always)]
+    pub fn limit(self, phi: f32, v_d: f32) -> f32 {
+        match self {
+            Isotherm::Partition { k } => k as f32 * phi,
+            // √ is exact and many times faster than a power.
+            Isotherm::Freundlich { k, b } if b == 0.5 => k as f32 * phi.sqrt(),
+            Isotherm::Freundlich { k, b } => k as f32 * libm::powf(phi, b as f32),
+            Isotherm::Langmuir { kl } => {
+                let filled = kl as f32 * phi;
+                v_d * filled / (1.0 + filled)
+            }
+        }
+    }
+}
+
+/// What one cell holds for adsorption.
+#[derive(Debug, Clone, Copy)]
+pub struct Pore {
+    /// c, the concentration of its liquid.
+    pub c: f32,
+    /// V_u, its free capacity.
+    pub v_u: f32,
+    /// V_d, its bound capacity.
+    pub v_d: f32,
+    /// 1/V_u, or 0.
+    pub per_v_u: f32,
+}
+
+/// The most of its free dye that a cell may lose in one split step: above
+/// [`MOST_EXCHANGE`](crate::diffusion::MOST_EXCHANGE), below 1 by more than rounding.
+const NEARLY_ALL: f32 = 1.0 - 1.0 / 131_072.0;
+
+/// One step of one cell: its concentration and bound dye afterwards.
+///
+/// `share` is D_ab·Δt/Δd² and less than 1. Neither limit is ever passed: a cell that already has
+/// more than the isotherm allows by now keeps it and binds no more.
+#[inline(always)]
+pub fn bind(isotherm: Isotherm, share: f32, pore: Pore, bound: f32) -> (f32, f32) {
+    let phi = pore.c * pore.v_u;
+    let limit = isotherm.limit(phi, pore.v_d).min(pore.v_d);
+    let after = (bound + share * phi).min(limit.max(bound));
+    // Exactly what the bound dye grew by in float32, so that no rounding makes or loses dye. Where
+    // rounding up would take nearly all that is there, or more, it waits for a later step.
+    let gained = after - bound;
+    if gained > phi * NEARLY_ALL {
+        return (pore.c, bound);
+    }
+    (pore.c - gained * pore.per_v_u, after)
+}
+
+/// One (split) step of every cell.
+pub fn step(
+    isotherm: Isotherm,
+    share: f32,
+    cloth: &Cloth,
+    per_capacity: &[f32],
+    concentration: &mut [f32],
+    bound: &mut [f32],
+) {
+    // Chosen once, not for every cell.
+    match isotherm {
+        Isotherm::Partition { k } => each(cloth, per_capacity, concentration, bound, |pore, a| {
+            bind(Isotherm::Partition { k }, share, pore, a)
+        }),
+        Isotherm::Freundlich { k, b } => each(cloth, per_capacity, concentration, bound, |pore, a| {
+            bind(Isotherm::Freundlich { k, b }, share, pore, a)
+        }),
+        Isotherm::Langmuir { kl } => each(cloth, per_capacity, concentration, bound, |pore, a| {
+            bind(Isotherm::Langmuir { kl }, share, pore, a)
+        }),
+    }
+}
+
+fn each(
+    cloth: &Cloth,
+    per_capacity: &[f32],
+    concentration: &mut [f32],
+    bound: &mut [f32],
+    bind: impl Fn(Pore, f32) -> (f32, f32) + Sync,
+) {
+    const CELLS_A_TASK: usize = 1 << 14;
+    let tasks = concentration
+        .par_chunks_mut(CELLS_A_TASK)
+        .zip(bound.par_chunks_mut(CELLS_A_TASK))
+        .zip(cloth.capacity_free.par_chunks(CELLS_A_TASK))
+        .zip(cloth.capacity_bound.par_chunks(CELLS_A_TASK))
+        .zip(per_capacity.par_chunks(CELLS_A_TASK));
+    tasks.for_each(|((((c, bound), v_u), v_d), per_v_u)| {
+        for i in 0..c.len() {
+            let pore = Pore {
+                c: c[i],
+                v_u: v_u[i],
+                v_d: v_d[i],
+                per_v_u: per_v_u[i],
+            };
+            (c[i], bound[i]) = bind(pore, bound[i]);
+        }
+    });
+}
+
+fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
+    let cells = match experiment.scenario.adsorption {
+        Some(_) => cloth.grid.len(),
+        None => 0,
+    };
+    commands.insert_resource(BoundDye {
+        amount: vec![0.0; cells],
+    });
+}
+
+fn adsorption(
+    mut free: ResMut<FreeDye>,
+    mut bound: ResMut<BoundDye>,
+    cloth: Res<Cloth>,
+    conductances: Res<Conductances>,
+    experiment: Res<TheExperiment>,
+) {
+    let Some(spec) = &experiment.scenario.adsorption else {
+        return;
+    };
+    let share = share_a_step(spec, &experiment.scenario) / f64::from(conductances.splits);
+    step(
+        spec.isotherm,
+        share as f32,
+        &cloth,
+        &conductances.per_capacity,
+        &mut free.concentration,
+        &mut bound.amount,
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limits(isotherm: Isotherm) -> impl Iterator<Item = (f32, f32)> {
+        (1..=20).map(move |i| {
+            let phi = i as f32 / 20.0;
+            (phi, isotherm.limit(phi, 0.5))
+        })
+    }
+
+    #[test]
+    fn partition_is_a_straight_line() {
+        for (phi, limit) in limits(Isotherm::Partition { k: 0.7 }) {
+            assert!((limit - 0.7 * phi).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn freundlich_is_a_power_of_the_free_dye() {
+        for b in [0.1, 0.3, 0.5, 0.9] {
+            for (phi, limit) in limits(Isotherm::Freundlich { k: 0.6, b }) {
+                let formula = 0.6 * f64::from(phi).powf(b);
+                assert!((f64::from(limit) - formula).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn freundlich_with_b_1_is_partition() {
+        let freundlich = limits(Isotherm::Freundlich { k: 0.6, b: 1.0 });
+        for (one, other) in freundlich.zip(limits(Isotherm::Partition { k: 0.6 })) {
+            assert!((one.1 - other.1).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn langmuir_begins_with_its_slope_and_ends_at_the_bound_capacity() {
+        let langmuir = |kl, phi| Isotherm::Langmuir { kl }.limit(phi, 0.5);
+        for (phi, limit) in limits(Isotherm::Langmuir { kl: 20.0 }) {
+            assert!((limit - 0.5 * 20.0 * phi / (1.0 + 20.0 * phi)).abs() < 1e-6);
+        }
+        assert!((langmuir(20.0, 1e-6) / (0.5 * 20.0 * 1e-6) - 1.0).abs() < 1e-3);
+        assert!((langmuir(1e6, 1.0) - 0.5).abs() < 1e-5);
+    }
+}

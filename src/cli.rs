@@ -1,0 +1,90 @@
+//! What may be typed. What it means is in `commands`.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+use clap_complete::Shell;
+
+/// Simulates how cloth is dyed, yarn by yarn, and records it as a time-lapse.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    arg_required_else_help = true,
+    after_help = "\
+Begin with:
+  dyelapse list                     see the scenarios that come with the program
+  dyelapse record one_drop          record the smallest one, in about a second
+  dyelapse record my_cloth.ron      record your own
+
+A scenario is a text file. Copy a bundled one from a recording's folder and change it;
+`dyelapse check` tells whether it is right."
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What can be done.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Dye a cloth and record it as a time-lapse
+    ///
+    /// Writes a folder: frame_00000.png and on, sheet.png with the chosen moments side by side,
+    /// recording.ron (what each file shows), ledger.csv (where all dye is at every frame) and the
+    /// scenario itself. Ctrl-C ends early and leaves a valid, shorter recording.
+    #[command(after_help = "\
+Examples:
+  dyelapse record seikaiha
+  dyelapse record one_drop --scale 8 --out drop
+  dyelapse record seikaiha --steps 12500 --frames 100 --video
+  dyelapse record fig9b --fields       also for NumPy: numpy.load('state_00000.npz')")]
+    Record(Record),
+    /// Tell whether scenarios are right, without running them
+    Check {
+        /// Scenario files, or names of bundled scenarios
+        #[arg(required = true, value_name = "SCENARIO")]
+        scenarios: Vec<String>,
+    },
+    /// List the scenarios that come with the program
+    List,
+    /// Print the completions of a shell
+    ///
+    /// For bash: dyelapse completions bash > ~/.local/share/bash-completion/completions/dyelapse
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+/// `dyelapse record`.
+#[derive(Debug, clap::Args)]
+pub struct Record {
+    /// A scenario file, or the name of a bundled scenario
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: String,
+    /// Folder for the recording [default: recordings/NAME]
+    #[arg(long, short, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Frames of the time-lapse, evenly spread [default: what the scenario says]
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u32>,
+    /// End after so many steps [default: what the scenario says]
+    #[arg(long, value_name = "N")]
+    pub steps: Option<u64>,
+    /// Pixels along one side of a cell [default: what the scenario says]
+    #[arg(long, value_name = "K")]
+    pub scale: Option<u32>,
+    /// Also write NumPy archives: cloth.npz, and state_00000.npz for every frame
+    #[arg(long)]
+    pub fields: bool,
+    /// Also make video.mp4 of the frames; needs ffmpeg
+    #[arg(long)]
+    pub video: bool,
+    /// Replace the recording that is already in the folder
+    #[arg(long)]
+    pub force: bool,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}

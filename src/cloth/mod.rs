@@ -1,0 +1,147 @@
+//! The cloth: two layers of yarns, woven, with pores for dye to move in and fibre for it to bind to.
+//!
+//! Paper D §4.1 and eqs 6, 9; model sections 1 and 2. The cloth does not change while it is dyed.
+//! Its yarns are few and its cells many, so what belongs to a yarn is looked up by column or row;
+//! only capacities, which resist changes cell by cell, are stored for every cell.
+
+mod grid;
+mod weave;
+mod yarns;
+
+use bevy::prelude::*;
+use rayon::prelude::*;
+
+pub use grid::{Grid, Layer};
+pub use weave::{Face, Weave, WeaveMatrix};
+pub use yarns::{Yarn, Yarns};
+
+use crate::chance::{Chance, Purpose};
+use crate::pattern::{Canvas, Raster};
+use crate::scenario::ClothSpec;
+use crate::schedule::{Prepare, PrepareSet, TheExperiment};
+use yarns::Draws;
+
+/// The cloth, woven once.
+pub struct ClothPlugin;
+
+impl Plugin for ClothPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Prepare, prepare.in_set(PrepareSet::Cloth));
+    }
+}
+
+fn prepare(mut commands: Commands, experiment: Res<TheExperiment>) {
+    let scenario = &experiment.scenario;
+    let resist = Canvas::of(&experiment).draw(&scenario.resist);
+    let chance = Chance(scenario.seed);
+    commands.insert_resource(Cloth::weave(&scenario.cloth, resist, chance));
+}
+
+/// A woven cloth, ready to be dyed.
+#[derive(Resource, Debug, Clone)]
+pub struct Cloth {
+    /// Its size in cells.
+    pub grid: Grid,
+    /// Side of a cell Δd, mm.
+    pub cell_mm: f64,
+    /// The yarns that run down, in the warp layer.
+    pub warp: Yarns,
+    /// The yarns that run across, in the weft layer.
+    pub weft: Yarns,
+    /// Which yarn is on top at every crossing.
+    pub weave: WeaveMatrix,
+    /// Porosity of the gaps in the weft layer and in the warp layer.
+    pub gap_porosity: [f64; 2],
+    /// How far every place is squeezed: the volume ratio B of paper D eq 9, for both layers.
+    pub resist: Raster,
+    /// V_u = P·V_max·(1−B), the most free dye a cell holds, with V_max = 1 (eq 9).
+    pub capacity_free: Vec<f32>,
+    /// V_d = (1−P)·V_max, the most dye the fibre of a cell binds; 0 in gaps (eq 6).
+    pub capacity_bound: Vec<f32>,
+}
+
+impl Cloth {
+    /// Weaves the cloth of a scenario and ties `resist` around it.
+    pub fn weave(spec: &ClothSpec, resist: Raster, chance: Chance) -> Self {
+        let (nx, ny) = spec.cells();
+        let grid = Grid { nx, ny };
+        let warp_draws = Draws {
+            porosity: Purpose::WarpPorosity,
+            twist: Purpose::WarpTwist,
+            squeeze: Purpose::WarpSqueeze,
+        };
+        let weft_draws = Draws {
+            porosity: Purpose::WeftPorosity,
+            twist: Purpose::WeftTwist,
+            squeeze: Purpose::WeftSqueeze,
+        };
+        let nominal = |porosity: f64| spec.gap_porosity.unwrap_or(porosity);
+        let mut cloth = Cloth {
+            grid,
+            cell_mm: spec.cell_mm,
+            warp: Yarns::lay(&spec.warp, spec.cell_mm, nx, chance, warp_draws),
+            weft: Yarns::lay(spec.weft(), spec.cell_mm, ny, chance, weft_draws),
+            weave: spec.weave.matrix(),
+            gap_porosity: [nominal(spec.weft().porosity), nominal(spec.warp.porosity)],
+            resist,
+            capacity_free: Vec::new(),
+            capacity_bound: Vec::new(),
+        };
+        cloth.capacity_free = cloth.field(|layer, y, x| {
+            cloth.porosity(layer, y, x) * (1.0 - cloth.volume_ratio(layer, y, x))
+        });
+        cloth.capacity_bound = cloth.field(|layer, y, x| match cloth.yarn(layer, y, x) {
+            Some(yarn) => 1.0 - yarn.porosity,
+            None => 0.0,
+        });
+        cloth
+    }
+
+    /// The yarn in a cell; none in a gap.
+    pub fn yarn(&self, layer: Layer, y: usize, x: usize) -> Option<&Yarn> {
+        match layer {
+            Layer::Weft => self.weft.at(y),
+            Layer::Warp => self.warp.at(x),
+        }
+    }
+
+    /// Whether a cell is fibre rather than gap.
+    pub fn fibre(&self, layer: Layer, y: usize, x: usize) -> bool {
+        self.yarn(layer, y, x).is_some()
+    }
+
+    /// Whether the warp is on top in the cloth cell that a position lies in.
+    pub fn warp_up(&self, y: usize, x: usize) -> bool {
+        self.weave.warp_up(self.warp.number(x), self.weft.number(y))
+    }
+
+    /// P of a cell, 0 to 1.
+    pub fn porosity(&self, layer: Layer, y: usize, x: usize) -> f64 {
+        match self.yarn(layer, y, x) {
+            Some(yarn) => yarn.porosity,
+            None => self.gap_porosity[layer as usize],
+        }
+    }
+
+    /// B of a cell, 0 to 1: what the resist leaves of it, squeezed again by its own yarn.
+    pub fn volume_ratio(&self, layer: Layer, y: usize, x: usize) -> f64 {
+        let squeeze = self.yarn(layer, y, x).map_or(0.0, |yarn| yarn.squeeze);
+        1.0 - (1.0 - f64::from(self.resist.at(y, x))) * (1.0 - squeeze)
+    }
+
+    /// A field over all cells from a rule for one.
+    pub fn field(&self, rule: impl Fn(Layer, usize, usize) -> f64 + Sync) -> Vec<f32> {
+        let Grid { nx, ny } = self.grid;
+        let mut field = vec![0.0; self.grid.len()];
+        field
+            .par_chunks_mut(nx.max(1))
+            .enumerate()
+            .for_each(|(row, cells)| {
+                let layer = Layer::BOTH[row / ny];
+                for (x, cell) in cells.iter_mut().enumerate() {
+                    *cell = rule(layer, row % ny, x) as f32;
+                }
+            });
+        field
+    }
+}

@@ -1,0 +1,46 @@
+//! `dyelapse check`.
+
+use std::fmt::Write;
+use std::process::ExitCode;
+
+use super::{BAD_INPUT, complain, print};
+use dyelapse::memory;
+use dyelapse::record::Plan;
+use dyelapse::scenario::Experiment;
+
+pub fn run(scenarios: &[String]) -> ExitCode {
+    let mut good = String::new();
+    let mut bad = 0;
+    for name in scenarios {
+        match check(name) {
+            Ok(summary) => {
+                let _ = writeln!(good, "{name}: {summary}");
+            }
+            Err(what) => {
+                complain(&what);
+                bad += 1;
+            }
+        }
+    }
+    let printed = print(good.as_bytes());
+    if bad > 0 {
+        ExitCode::from(BAD_INPUT)
+    } else {
+        printed
+    }
+}
+
+fn check(name: &str) -> Result<String, String> {
+    let experiment = Experiment::load(name).map_err(|why| why.to_string())?;
+    let scenario = &experiment.scenario;
+    let plan = Plan::new(scenario, None, None).map_err(|why| format!("{name}: {why}"))?;
+    let (nx, ny) = scenario.cloth.cells();
+    let hours = plan.steps as f64 * scenario.process.step_h;
+    let megabytes = memory::needed(scenario, scenario.look.pixels_per_cell) / 1_000_000;
+    Ok(format!(
+        "right; {nx}×{ny}×2 cells, {} steps ({hours} h), {} frames, at most {} MB of memory",
+        plan.steps,
+        plan.frames(),
+        megabytes.max(1)
+    ))
+}

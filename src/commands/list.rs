@@ -1,0 +1,26 @@
+//! `dyelapse list`.
+
+use std::fmt::Write;
+use std::process::ExitCode;
+
+use super::{FAILED, complain, print};
+use dyelapse::scenario::{Experiment, bundled_names};
+
+pub fn run() -> ExitCode {
+    let names = bundled_names();
+    let widest = names.iter().map(|name| name.len()).max().unwrap_or(0);
+    let mut list = String::new();
+    for name in names {
+        match Experiment::load(name) {
+            Ok(experiment) => {
+                let title = &experiment.scenario.title;
+                let _ = writeln!(list, "{name:widest$}  {title}");
+            }
+            Err(why) => {
+                complain(&why);
+                return ExitCode::from(FAILED);
+            }
+        }
+    }
+    print(list.as_bytes())
+}

@@ -1,0 +1,51 @@
+//! What each command does.
+
+mod check;
+mod list;
+mod progress;
+mod record;
+
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::CommandFactory;
+
+use crate::cli::{Cli, Command};
+
+/// Something the one who asked can mend: a scenario, an argument, a folder.
+const BAD_INPUT: u8 = 2;
+/// Something that is wrong with the machine: a full disk, say.
+const FAILED: u8 = 1;
+/// Ended by Ctrl-C.
+const INTERRUPTED: u8 = 130;
+
+/// Does what was typed.
+pub fn run(cli: Cli) -> ExitCode {
+    match cli.command {
+        Command::Record(arguments) => record::run(&arguments),
+        Command::Check { scenarios } => check::run(&scenarios),
+        Command::List => list::run(),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "dyelapse", &mut script);
+            print(&script)
+        }
+    }
+}
+
+/// Prints to standard output. A reader that has gone (`dyelapse list | head -1`) is no error.
+fn print(text: &[u8]) -> ExitCode {
+    match io::stdout().write_all(text) {
+        Err(why) if why.kind() != io::ErrorKind::BrokenPipe => {
+            complain(&format!("cannot print: {why}"));
+            ExitCode::from(FAILED)
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
+
+/// Says what is wrong on standard error. Nobody is left to tell if that fails.
+fn complain(what: &impl Display) {
+    let _ = writeln!(io::stderr(), "dyelapse: {what}");
+}

@@ -1,0 +1,73 @@
+//! `dyelapse record`.
+
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::progress::Progress;
+use super::{BAD_INPUT, FAILED, INTERRUPTED, complain};
+use crate::cli::Record;
+use dyelapse::record::{Options, default_folder, record};
+use dyelapse::scenario::Experiment;
+
+pub fn run(arguments: &Record) -> ExitCode {
+    let experiment = match Experiment::load(&arguments.scenario) {
+        Ok(experiment) => experiment,
+        Err(why) => {
+            complain(&why);
+            return ExitCode::from(BAD_INPUT);
+        }
+    };
+    let options = Options {
+        out: arguments
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(&experiment)),
+        frames: arguments.frames,
+        steps: arguments.steps,
+        scale: arguments.scale,
+        fields: arguments.fields,
+        video: arguments.video,
+        force: arguments.force,
+    };
+
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let heard = interrupted.clone();
+    if let Err(why) = ctrlc::set_handler(move || heard.store(true, Ordering::Relaxed)) {
+        complain(&format!("Ctrl-C will not leave a whole recording: {why}"));
+    }
+    let steps = arguments
+        .steps
+        .unwrap_or_else(|| experiment.scenario.process.steps());
+    let mut progress = Progress::new(&experiment.scenario.title, steps, arguments.quiet);
+    let recorded = record(&experiment, &options, |step| {
+        progress.at(step);
+        !interrupted.load(Ordering::Relaxed)
+    });
+    match recorded {
+        Ok(recording) => {
+            let seconds = progress.elapsed().as_secs_f64();
+            let (nx, ny) = experiment.scenario.cloth.cells();
+            let updates = recording.steps as f64 * (2 * nx * ny) as f64 / seconds.max(1e-9);
+            let ended = if recording.complete { "" } else { "stopped; " };
+            let word = format!(
+                "{ended}{} frames in {} ({} steps in {seconds:.2} s, {:.2} billion cell updates a second)",
+                recording.frames,
+                recording.folder.display(),
+                recording.steps,
+                updates / 1e9
+            );
+            progress.end(recording.steps, &word);
+            if recording.complete {
+                ExitCode::SUCCESS
+            } else {
+                ExitCode::from(INTERRUPTED)
+            }
+        }
+        Err(why) => {
+            progress.give_up();
+            complain(&why);
+            ExitCode::from(if why.is_bad_input() { BAD_INPUT } else { FAILED })
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The explicit solver, the reference: forward Euler in paper D's time step (eq 2).
+//!
+//! In pore-concentration form (model section 2) every cell changes by
+//!
+//! V_u,i · Δc_i = Σ_j G_ij · ρ_ij · (c_j − c_i),   G_ij = Δt/Δd² · D_ij · min(V_u,i , V_u,j)
+//!
+//! over its five neighbours. What one cell loses through a face the other gains, to the last bit,
+//! since c_j − c_i only changes sign; so dye is conserved up to the rounding of c itself.
+//!
+//! **Bounds.** With a_ij = G_ij/V_u,i and Σ_j a_ij ≤ 1, c_i moves towards a mean of its neighbours
+//! and never past it. [`Conductances`](super::Conductances) splits a step until
+//! Σ_j a_ij ≤ 1 − 2⁻¹⁶; that margin is larger than every rounding error of the sum below, and
+//! rounding is monotone, so 0 ≤ c ≤ 1 holds in float32 without any clamp.
+
+use rayon::prelude::*;
+
+use super::Conductances;
+
+/// How the face between two cells passes dye.
+trait Passage: Copy + Sync {
+    /// The amount that passes to a cell with concentration `here` from one with `there`.
+    fn flow(self, conductance: f32, here: f32, there: f32) -> f32;
+}
+
+/// ρ = 1: Fick's law alone.
+#[derive(Clone, Copy)]
+struct Fick;
+
+impl Passage for Fick {
+    #[inline(always)]
+    fn flow(self, conductance: f32, here: f32, there: f32) -> f32 {
+        conductance * (there - here)
+    }
+}
+
+/// ρ = min(1, φ₀/c̄) with c̄ the mean of both sides (Weisz–Zollinger, paper D eq 4; model section 2).
+#[derive(Clone, Copy)]
+struct WeiszZollinger {
+    equilibrium: f32,
+}
+
+impl Passage for WeiszZollinger {
+    #[inline(always)]
+    fn flow(self, conductance: f32, here: f32, there: f32) -> f32 {
+        let mean = 0.5 * (here + there);
+        // At c̄ = 0 the quotient is infinite and the minimum 1.
+        conductance * (self.equilibrium / mean).min(1.0) * (there - here)
+    }
+}
+
+/// Rows that one task advances. Larger tasks leave a core idle at the end of a step, smaller ones
+/// cost more in handing out than in computing.
+const CELLS_A_TASK: usize = 1 << 14;
+
+/// Advances the concentration of free dye `now` by one (split) step into `next`.
+///
+/// Both hold `(layer, y, x)`. The result does not depend on the number of threads: every cell is
+/// computed from `now` alone.
+pub fn step(conductances: &Conductances, equilibrium: f64, now: &[f32], next: &mut [f32]) {
+    if equilibrium < 1.0 {
+        let passage = WeiszZollinger {
+            equilibrium: equilibrium as f32,
+        };
+        advance(conductances, passage, now, next);
+    } else {
+        advance(conductances, Fick, now, next);
+    }
+}
+
+fn advance<P: Passage>(conductances: &Conductances, passage: P, now: &[f32], next: &mut [f32]) {
+    let nx = conductances.grid.nx;
+    let (weft, warp) = next.split_at_mut(conductances.grid.layer_len());
+    let rows_a_task = (CELLS_A_TASK / (2 * nx)).max(1);
+    let advance_rows = |(task, (weft, warp)): (usize, (&mut [f32], &mut [f32]))| {
+        let rows = weft.chunks_exact_mut(nx).zip(warp.chunks_exact_mut(nx));
+        for (i, (weft, warp)) in rows.enumerate() {
+            let y = task * rows_a_task + i;
+            advance_row(&Row::new(conductances, now, 0, y), passage, weft);
+            advance_row(&Row::new(conductances, now, 1, y), passage, warp);
+        }
+    };
+    let tasks = weft
+        .par_chunks_mut(rows_a_task * nx)
+        .zip(warp.par_chunks_mut(rows_a_task * nx))
+        .enumerate();
+    if tasks.len() == 1 {
+        advance_rows((0, (weft, warp)));
+    } else {
+        tasks.for_each(advance_rows);
+    }
+}
+
+/// Everything that one row of one layer is computed from; each slice is one row long.
+struct Row<'a> {
+    here: &'a [f32],
+    north: &'a [f32],
+    south: &'a [f32],
+    beside: &'a [f32],
+    east_g: &'a [f32],
+    north_g: &'a [f32],
+    south_g: &'a [f32],
+    beside_g: &'a [f32],
+    per_capacity: &'a [f32],
+}
+
+impl<'a> Row<'a> {
+    fn new(conductances: &'a Conductances, now: &'a [f32], layer: usize, y: usize) -> Self {
+        let grid = conductances.grid;
+        let row = |field: &'a [f32], layer: usize, y: usize| {
+            &field[(layer * grid.ny + y) * grid.nx..][..grid.nx]
+        };
+        let first = y == 0;
+        // Beyond the edge of the cloth stands the row itself: no difference, no flow.
+        let above = if first { y } else { y - 1 };
+        let below = if y + 1 == grid.ny { y } else { y + 1 };
+        Row {
+            here: row(now, layer, y),
+            north: row(now, layer, above),
+            south: row(now, layer, below),
+            beside: row(now, 1 - layer, y),
+            east_g: row(&conductances.east, layer, y),
+            north_g: row(&conductances.south, layer, above),
+            south_g: row(&conductances.south, layer, y),
+            beside_g: row(&conductances.beside, 0, y),
+            per_capacity: row(&conductances.per_capacity, layer, y),
+        }
+    }
+}
+
+/// Computes one row. The terms are added in pairs of opposite neighbours, so that a mirrored cloth
+/// gives exactly the mirrored result.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn advance_row<P: Passage>(row: &Row, passage: P, next: &mut [f32]) {
+    let n = next.len();
+    let Row {
+        here,
+        north,
+        south,
+        beside,
+        east_g,
+        north_g,
+        south_g,
+        beside_g,
+        per_capacity,
+    } = *row;
+    // Slices of one known length let the compiler drop every bounds check.
+    let (here, north, south, beside) = (&here[..n], &north[..n], &south[..n], &beside[..n]);
+    let (east_g, north_g, south_g) = (&east_g[..n], &north_g[..n], &south_g[..n]);
+    let (beside_g, per_capacity) = (&beside_g[..n], &per_capacity[..n]);
+    let cell = |x: usize, west: f32, east: f32| {
+        let c = here[x];
+        let up_down =
+            passage.flow(north_g[x], c, north[x]) + passage.flow(south_g[x], c, south[x]);
+        let across = passage.flow(beside_g[x], c, beside[x]);
+        c + per_capacity[x] * (((west + east) + up_down) + across)
+    };
+    let flow_east = |x: usize| passage.flow(east_g[x], here[x], here[x + 1]);
+    let flow_west = |x: usize| passage.flow(east_g[x - 1], here[x], here[x - 1]);
+    if n == 1 {
+        next[0] = cell(0, 0.0, 0.0);
+        return;
+    }
+    next[0] = cell(0, 0.0, flow_east(0));
+    for x in 1..n - 1 {
+        next[x] = cell(x, flow_west(x), flow_east(x));
+    }
+    next[n - 1] = cell(n - 1, flow_west(n - 1), 0.0);
+}

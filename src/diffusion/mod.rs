@@ -1,0 +1,186 @@
+//! Dye moves: Fick's second law on the layered grid (paper D §4.2a, eqs 1–5; model section 2).
+//!
+//! Owns the free dye ([`FreeDye`]) and what the faces let through ([`Conductances`]).
+
+mod explicit;
+mod faces;
+
+use bevy::prelude::*;
+use rayon::prelude::*;
+
+pub use explicit::step;
+pub use faces::Faces;
+
+use crate::cloth::{Cloth, Grid, Layer};
+use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, TheExperiment};
+
+/// Diffusion of free dye through the pores.
+pub struct DiffusionPlugin;
+
+impl Plugin for DiffusionPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
+            .add_systems(DyeStep, diffusion.in_set(DyeSet::Diffusion));
+    }
+}
+
+/// Free dye: the concentration c = φ/V_u of the liquid in every cell, 0 to 1, as `(layer, y, x)`.
+#[derive(Resource, Debug, Clone, PartialEq)]
+pub struct FreeDye {
+    /// The concentration at this moment.
+    pub concentration: Vec<f32>,
+    /// Where the next step is computed.
+    next: Vec<f32>,
+}
+
+impl FreeDye {
+    /// Clean water in every cell.
+    pub fn clean(grid: Grid) -> Self {
+        FreeDye {
+            concentration: vec![0.0; grid.len()],
+            next: vec![0.0; grid.len()],
+        }
+    }
+
+    /// The free dye in the whole cloth: Σ φ = Σ c·V_u, in cell volumes.
+    pub fn total(&self, cloth: &Cloth) -> f64 {
+        let amounts = self.concentration.iter().zip(&cloth.capacity_free);
+        amounts.map(|(c, v)| f64::from(*c) * f64::from(*v)).sum()
+    }
+}
+
+/// What the faces of the cloth let through in one (split) step: G = Δt/Δd² · D_face · min(V_u),
+/// and what the explicit solver needs to be stable.
+#[derive(Resource, Debug, Clone)]
+pub struct Conductances {
+    /// The size of the fields.
+    pub grid: Grid,
+    /// Face between `x` and `x + 1`, `(layer, y, x)`; 0 in the last column.
+    pub east: Vec<f32>,
+    /// Face between `y` and `y + 1`, `(layer, y, x)`; 0 in the last row.
+    pub south: Vec<f32>,
+    /// Face between the layers, `(y, x)`.
+    pub beside: Vec<f32>,
+    /// 1/V_u, `(layer, y, x)`; 0 in a cell that holds no liquid.
+    pub per_capacity: Vec<f32>,
+    /// Into how many parts a step must be split to keep 0 ≤ c ≤ 1; 1 for paper D's parameters.
+    pub splits: u32,
+}
+
+/// The most that a cell may exchange in one split step, as a share of itself: see
+/// [`explicit`](self::explicit) for why the margin is there.
+pub(crate) const MOST_EXCHANGE: f64 = 1.0 - 1.0 / 65536.0;
+
+impl Conductances {
+    /// The conductances of a cloth for steps of `step_h` hours.
+    ///
+    /// `most_bound_a_step` is the largest share of its free dye that a cell may bind in one step;
+    /// the step is split for it as well.
+    pub fn new(cloth: &Cloth, faces: &Faces, step_h: f64, most_bound_a_step: f64) -> Self {
+        let grid = cloth.grid;
+        let scale = step_h / (cloth.cell_mm * cloth.cell_mm);
+        let capacity = |layer, y, x| f64::from(cloth.capacity_free[grid.index(layer, y, x)]);
+        let east = cloth.field(|layer, y, x| {
+            if x + 1 == grid.nx {
+                return 0.0;
+            }
+            let narrower = capacity(layer, y, x).min(capacity(layer, y, x + 1));
+            scale * faces.x(layer, y, x) * narrower
+        });
+        let south = cloth.field(|layer, y, x| {
+            if y + 1 == grid.ny {
+                return 0.0;
+            }
+            let narrower = capacity(layer, y, x).min(capacity(layer, y + 1, x));
+            scale * faces.y(layer, y, x) * narrower
+        });
+        let mut beside = vec![0.0; grid.layer_len()];
+        beside
+            .par_chunks_mut(grid.nx)
+            .enumerate()
+            .for_each(|(y, row)| {
+                for (x, g) in row.iter_mut().enumerate() {
+                    let narrower = capacity(Layer::Weft, y, x).min(capacity(Layer::Warp, y, x));
+                    *g = (scale * faces.z(y, x) * narrower) as f32;
+                }
+            });
+        let per_capacity = cloth.field(|layer, y, x| {
+            let capacity = capacity(layer, y, x);
+            if capacity > 0.0 { 1.0 / capacity } else { 0.0 }
+        });
+        let mut conductances = Conductances {
+            grid,
+            east,
+            south,
+            beside,
+            per_capacity,
+            splits: 1,
+        };
+        let exchange = conductances.largest_exchange().max(most_bound_a_step);
+        conductances.split((exchange / MOST_EXCHANGE).ceil().max(1.0));
+        conductances
+    }
+
+    /// The largest Σ_j a_ij: how much of itself a cell exchanges in one step.
+    fn largest_exchange(&self) -> f64 {
+        let Grid { nx, ny } = self.grid;
+        (0..2 * ny)
+            .into_par_iter()
+            .map(|row| {
+                let (y, at) = (row % ny, row * nx);
+                let exchange = |x: usize| {
+                    let i = at + x;
+                    let west = if x > 0 { self.east[i - 1] } else { 0.0 };
+                    let north = if y > 0 { self.south[i - nx] } else { 0.0 };
+                    let around = [self.east[i], west, self.south[i], north, self.beside[y * nx + x]];
+                    let sum: f64 = around.iter().map(|g| f64::from(*g)).sum();
+                    sum * f64::from(self.per_capacity[i])
+                };
+                (0..nx).map(exchange).fold(0.0, f64::max)
+            })
+            .reduce(|| 0.0, f64::max)
+    }
+
+    fn split(&mut self, splits: f64) {
+        self.splits = splits.min(f64::from(u32::MAX)) as u32;
+        if self.splits > 1 {
+            let share = (1.0 / f64::from(self.splits)) as f32;
+            for field in [&mut self.east, &mut self.south, &mut self.beside] {
+                field.par_iter_mut().for_each(|g| *g *= share);
+            }
+        }
+    }
+}
+
+fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
+    let scenario = &experiment.scenario;
+    let faces = Faces {
+        cloth: &cloth,
+        paths: &scenario.cloth.paths,
+        in_water: scenario.dye.diffusivity.in_water(),
+    };
+    let binding = scenario.adsorption.map_or(0.0, |adsorption| {
+        crate::adsorption::share_a_step(&adsorption, scenario)
+    });
+    commands.insert_resource(Conductances::new(
+        &cloth,
+        &faces,
+        scenario.process.step_h,
+        binding,
+    ));
+    commands.insert_resource(FreeDye::clean(cloth.grid));
+}
+
+fn diffusion(
+    mut dye: ResMut<FreeDye>,
+    conductances: Res<Conductances>,
+    experiment: Res<TheExperiment>,
+) {
+    let FreeDye {
+        concentration,
+        next,
+    } = &mut *dye;
+    let equilibrium = experiment.scenario.dye.equilibrium;
+    explicit::step(&conductances, equilibrium, concentration, next);
+    std::mem::swap(concentration, next);
+}

@@ -1,0 +1,94 @@
+//! Refusing a cloth that does not fit in memory, before anything is allocated for it.
+
+use sysinfo::System;
+use thiserror::Error;
+
+use crate::scenario::Scenario;
+
+/// Bytes of every field kept for one cell of a layer: two of free dye, two of conductances along
+/// the cloth, half of one between the layers, capacities and their inverse, bound dye, and half of
+/// the resist.
+const BYTES_PER_CELL: u128 = 36;
+/// Bytes for one pixel of the picture: what it shows and its shade, its colour, and the two frames
+/// that wait for the disk.
+const BYTES_PER_PIXEL: u128 = 8 + 3 * 3;
+
+/// A cloth that does not fit in memory.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error(
+    "a cloth of {nx}×{ny}×2 cells drawn at {scale} pixels a cell needs {} of memory, \
+     but only {} is free", gigabytes(*.needed), gigabytes(u128::from(*.free))
+)]
+pub struct MemoryError {
+    /// Cells across.
+    pub nx: usize,
+    /// Cells down.
+    pub ny: usize,
+    /// Pixels along one side of a cell.
+    pub scale: u32,
+    /// Bytes needed.
+    pub needed: u128,
+    /// Bytes free.
+    pub free: u64,
+}
+
+/// Bytes that dyeing and drawing a scenario takes at most, at `scale` pixels a cell.
+pub fn needed(scenario: &Scenario, scale: u32) -> u128 {
+    let (nx, ny) = scenario.cloth.cells();
+    let cells = 2 * nx as u128 * ny as u128;
+    let pixels = nx as u128 * ny as u128 * u128::from(scale) * u128::from(scale);
+    let patterns = scenario.supply.iter().map(|supply| supply.shape());
+    let rasters = patterns
+        .chain([&scenario.resist])
+        .map(|pattern| pattern.rasters_at_once())
+        .max()
+        .unwrap_or(0);
+    // A held cell is listed with its place and dose, in both layers.
+    let held = 16 * scenario.supply.len() as u128;
+    // Images are kept as rasters beside the ones that are drawn.
+    let per_layer_cell = 4 * (rasters as u128 + scenario.patterns().len() as u128);
+    cells * (BYTES_PER_CELL + held) + cells / 2 * per_layer_cell + pixels * BYTES_PER_PIXEL
+}
+
+/// Refuses a scenario that needs more memory than is free.
+///
+/// # Errors
+/// A [`MemoryError`] with both figures.
+pub fn check(scenario: &Scenario, scale: u32) -> Result<(), MemoryError> {
+    let needed = needed(scenario, scale);
+    let free = free();
+    if needed <= u128::from(free) {
+        return Ok(());
+    }
+    let (nx, ny) = scenario.cloth.cells();
+    Err(MemoryError {
+        nx,
+        ny,
+        scale,
+        needed,
+        free,
+    })
+}
+
+/// What is taken to be free where the system does not tell, bytes.
+const UNKNOWN_MEMORY: u64 = 4 << 30;
+
+/// Bytes of memory that this process may still take.
+fn free() -> u64 {
+    let Ok(mut system) = System::new() else {
+        return UNKNOWN_MEMORY;
+    };
+    system.refresh_memory();
+    let machine = match system.available_memory() {
+        0 => UNKNOWN_MEMORY,
+        bytes => bytes,
+    };
+    match system.cgroup_limits() {
+        Some(group) => machine.min(group.free_memory),
+        None => machine,
+    }
+}
+
+fn gigabytes(bytes: u128) -> String {
+    format!("{:.1} GB", bytes as f64 / 1e9)
+}

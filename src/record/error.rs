@@ -1,0 +1,79 @@
+//! Why a recording could not be made.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::memory::MemoryError;
+use crate::scenario::LARGEST_SCALE;
+
+/// Why a recording could not be made.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// The scale is out of range.
+    #[error("--scale: 1 to {LARGEST_SCALE} pixels a cell is allowed, but this is {0}")]
+    Scale(u32),
+    /// The number of frames is out of range.
+    #[error("{field}: 1 to {most} frames are possible in {steps} steps, but this asks for {frames}")]
+    Frames {
+        /// Where the number was given: an option or a field.
+        field: &'static str,
+        /// The number asked for.
+        frames: u32,
+        /// The most that are possible.
+        most: u64,
+        /// The steps of the process.
+        steps: u64,
+    },
+    /// The number of steps is out of range.
+    #[error("--steps: 0 to {most} is allowed, but this is {steps}")]
+    Steps {
+        /// The number asked for.
+        steps: u64,
+        /// The most that are possible.
+        most: u64,
+    },
+    /// The cloth does not fit in memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+    /// A film was asked for but cannot be made here.
+    #[error(
+        "--video needs the program ffmpeg, and it is not on the path: install it (its package is \
+         usually called ffmpeg), or record without --video"
+    )]
+    NoFfmpeg,
+    /// There is something in the folder already.
+    #[error(
+        "the folder {} is not empty: choose another with --out, or give --force to replace the \
+         recording in it", .0.display()
+    )]
+    NotEmpty(PathBuf),
+    /// The folder is a file.
+    #[error("{} is a file, not a folder", .0.display())]
+    NotAFolder(PathBuf),
+    /// A file could not be written.
+    #[error("cannot write {}: {why}", .path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        why: io::Error,
+    },
+    /// ffmpeg failed.
+    #[error("the frames are all there, but ffmpeg could not make a film of them: {0}")]
+    Ffmpeg(String),
+    /// A plugin took the recorder away while it was at work.
+    #[error("the recorder was removed from the app before the recording was done")]
+    Lost,
+}
+
+impl RecordError {
+    /// Whether the one who asked can mend it by asking otherwise; the rest is the machine's fault.
+    pub fn is_bad_input(&self) -> bool {
+        !matches!(
+            self,
+            RecordError::Write { .. } | RecordError::Ffmpeg(_) | RecordError::Lost
+        )
+    }
+}

@@ -1,0 +1,126 @@
+//! Recording: frames of the cloth at chosen moments, and everything needed to use them later.
+//!
+//! A recording is a folder: frames, a contact sheet, a manifest, the ledger, the scenario itself,
+//! and on request the fields behind the pictures and a film.
+
+mod error;
+mod fields;
+mod folder;
+mod manifest;
+mod plan;
+mod recorder;
+mod sheet;
+mod video;
+mod writer;
+
+use std::path::{Path, PathBuf};
+
+pub use error::RecordError;
+pub use manifest::{Frame, Manifest};
+pub use plan::{Plan, Stop};
+pub use recorder::{RecordPlugin, Recorder};
+pub use video::ffmpeg_is_there;
+
+use crate::memory;
+use crate::scenario::{Experiment, LARGEST_SCALE};
+use crate::schedule::advance_to;
+use crate::texture::Scale;
+use crate::{DyeingPlugins, look, prepare};
+use folder::Folder;
+
+/// What to record, where it differs from what the scenario says.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// The folder for the recording.
+    pub out: PathBuf,
+    /// Frames of the time-lapse.
+    pub frames: Option<u32>,
+    /// Steps of the process.
+    pub steps: Option<u64>,
+    /// Pixels along one side of a cell.
+    pub scale: Option<u32>,
+    /// Whether to keep the fields behind every frame.
+    pub fields: bool,
+    /// Whether to make a film of the frames.
+    pub video: bool,
+    /// Whether to replace a recording that is already in the folder.
+    pub force: bool,
+}
+
+/// What a recording came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Frames kept.
+    pub frames: usize,
+    /// Steps done.
+    pub steps: u64,
+    /// Whether it reached its end; false if it was stopped.
+    pub complete: bool,
+}
+
+/// Runs an experiment and records it.
+///
+/// `go_on` is told the step after every step, and asked whether to go on; a recording that is
+/// stopped is shorter, and valid.
+///
+/// # Errors
+/// A [`RecordError`]; nothing is written where the options themselves are wrong.
+pub fn record(
+    experiment: &Experiment,
+    options: &Options,
+    mut go_on: impl FnMut(u64) -> bool,
+) -> Result<Recording, RecordError> {
+    let scenario = &experiment.scenario;
+    let scale = options.scale.unwrap_or(scenario.look.pixels_per_cell);
+    if !(1..=LARGEST_SCALE).contains(&scale) {
+        return Err(RecordError::Scale(scale));
+    }
+    memory::check(scenario, scale)?;
+    let plan = Plan::new(scenario, options.frames, options.steps)?;
+    if options.video && !ffmpeg_is_there() {
+        return Err(RecordError::NoFfmpeg);
+    }
+    let folder = Folder::claim(&options.out, options.force)?;
+    let recorder = Recorder::start(experiment, folder, &plan, scale, options.fields)?;
+
+    let mut app = bevy::app::App::new();
+    app.add_plugins((DyeingPlugins, RecordPlugin))
+        .insert_resource(Scale(scale))
+        .insert_resource(recorder);
+    prepare(&mut app, experiment.clone());
+    let world = app.world_mut();
+
+    let mut complete = true;
+    for stop in &plan.stops {
+        if !advance_to(world, stop.step, &mut go_on) {
+            complete = false;
+            break;
+        }
+        world.resource_mut::<Recorder>().expect(*stop);
+        look(world);
+        if world.resource::<Recorder>().has_failed() {
+            break;
+        }
+    }
+    let steps = world.resource::<crate::schedule::ProcessClock>().step;
+    let Some(recorder) = world.remove_resource::<Recorder>() else {
+        return Err(RecordError::Lost);
+    };
+    let manifest = recorder.finish(complete)?;
+    if options.video {
+        video::make(&options.out, &manifest)?;
+    }
+    Ok(Recording {
+        folder: options.out.clone(),
+        frames: manifest.frames.len(),
+        steps,
+        complete,
+    })
+}
+
+/// The default folder for a recording of an experiment.
+pub fn default_folder(experiment: &Experiment) -> PathBuf {
+    Path::new("recordings").join(&experiment.name)
+}

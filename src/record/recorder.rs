@@ -1,0 +1,201 @@
+//! The recorder: keeps the frames that it is told to expect.
+
+use std::path::{Component, Path};
+
+use bevy::prelude::*;
+
+use super::fields::{self, State};
+use super::folder::Folder;
+use super::manifest::{self, Frame, Manifest};
+use super::plan::{Plan, Stop};
+use super::sheet::Sheet;
+use super::writer::{self, Job, Writer};
+use super::RecordError;
+use crate::adsorption::BoundDye;
+use crate::cloth::Cloth;
+use crate::diffusion::FreeDye;
+use crate::ledger::Ledger;
+use crate::scenario::{Experiment, Origin};
+use crate::schedule::{DyeFrame, FrameSet, ProcessClock, TheExperiment};
+use crate::supply::Supplies;
+use crate::texture::Picture;
+
+/// Recording of every frame that the [`Recorder`] is told to expect.
+pub struct RecordPlugin;
+
+impl Plugin for RecordPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            DyeFrame,
+            keep.in_set(FrameSet::Keep)
+                .run_if(resource_exists::<Recorder>),
+        );
+    }
+}
+
+/// Keeps frames in a folder.
+#[derive(Resource)]
+pub struct Recorder {
+    folder: Folder,
+    writer: Writer,
+    manifest: Manifest,
+    ledger: String,
+    sheet: Sheet,
+    /// Whether fields are kept beside the pictures, and the cloth's own have been.
+    fields: bool,
+    expected: Option<Stop>,
+    failed: Option<RecordError>,
+}
+
+impl Recorder {
+    pub(super) fn start(
+        experiment: &Experiment,
+        folder: Folder,
+        plan: &Plan,
+        scale: u32,
+        fields: bool,
+    ) -> Result<Self, RecordError> {
+        let scenario = &experiment.scenario;
+        let file = format!("{}.ron", experiment.name);
+        folder.write(&file, |out| {
+            std::io::Write::write_all(out, experiment.text.as_bytes())
+        })?;
+        copy_pictures(experiment, &folder)?;
+        let (nx, ny) = scenario.cloth.cells();
+        let manifest = Manifest {
+            dyelapse: env!("CARGO_PKG_VERSION").into(),
+            title: scenario.title.clone(),
+            scenario: file,
+            scenario_sha256: experiment.hash(),
+            seed: scenario.seed,
+            steps: plan.steps,
+            step_h: scenario.process.step_h,
+            pixels: (nx * scale as usize, ny * scale as usize),
+            pixels_per_cell: scale,
+            complete: false,
+            frames: Vec::new(),
+        };
+        Ok(Recorder {
+            writer: Writer::start(folder.clone()),
+            folder,
+            manifest,
+            ledger: manifest::LEDGER_HEAD.into(),
+            sheet: Sheet::new(&scenario.title),
+            fields,
+            expected: None,
+            failed: None,
+        })
+    }
+
+    /// Tells the recorder what the next frame is for.
+    pub fn expect(&mut self, stop: Stop) {
+        self.expected = Some(stop);
+    }
+
+    /// Whether writing has failed; [`Recorder::finish`] says why.
+    pub fn has_failed(&self) -> bool {
+        self.failed.is_some()
+    }
+
+    fn give(&mut self, job: Job) {
+        if !self.writer.give(job) {
+            // The writer has stopped; what stopped it is told when it is joined.
+            self.failed.get_or_insert(RecordError::Lost);
+        }
+    }
+
+    /// Writes what is written last, and waits for the rest.
+    pub(super) fn finish(mut self, complete: bool) -> Result<Manifest, RecordError> {
+        self.writer.finish()?;
+        if let Some(failed) = self.failed {
+            return Err(failed);
+        }
+        self.manifest.complete = complete;
+        let sheet = self.sheet.draw();
+        self.folder
+            .write("sheet.png", |file| writer::encode(&sheet, file))?;
+        let text = |name: &str, text: &str| {
+            self.folder
+                .write(name, |file| std::io::Write::write_all(file, text.as_bytes()))
+        };
+        text("ledger.csv", &self.ledger)?;
+        text("recording.ron", &self.manifest.to_ron())?;
+        Ok(self.manifest)
+    }
+}
+
+/// Copies the pictures of a scenario beside its copy, so that the copy runs as well. Pictures that
+/// lie outside the scenario's folder stay where they are.
+fn copy_pictures(experiment: &Experiment, folder: &Folder) -> Result<(), RecordError> {
+    let Origin::File(scenario) = &experiment.origin else {
+        return Ok(());
+    };
+    let beside = scenario.parent().unwrap_or(Path::new(""));
+    for file in experiment.images.files() {
+        let is_plain = |part: Component| matches!(part, Component::Normal(_));
+        if !Path::new(file).components().all(is_plain) {
+            continue;
+        }
+        let to = folder.file(file);
+        let copied = match to.parent() {
+            Some(parent) => std::fs::create_dir_all(parent),
+            None => Ok(()),
+        }
+        .and_then(|()| std::fs::copy(beside.join(file), &to));
+        copied.map_err(|why| RecordError::Write { path: to, why })?;
+    }
+    Ok(())
+}
+
+/// What the fields of a frame are taken from.
+#[derive(bevy::ecs::system::SystemParam)]
+pub(super) struct Dyed<'w> {
+    pub experiment: Res<'w, TheExperiment>,
+    pub cloth: Res<'w, Cloth>,
+    pub free: Res<'w, FreeDye>,
+    pub bound: Res<'w, BoundDye>,
+    pub supplies: Res<'w, Supplies>,
+}
+
+fn keep(
+    mut recorder: ResMut<Recorder>,
+    clock: Res<ProcessClock>,
+    ledger: Res<Ledger>,
+    picture: Res<Picture>,
+    dyed: Dyed,
+) {
+    let Some(stop) = recorder.expected.take() else {
+        return;
+    };
+    if stop.sheet {
+        recorder.sheet.add(&picture, clock.step, clock.hours());
+    }
+    let Some(frame) = stop.frame else {
+        return;
+    };
+    let name = format!("frame_{frame:05}.png");
+    recorder.give(Job::Picture {
+        name: name.clone(),
+        picture: picture.clone(),
+    });
+    if recorder.fields {
+        if recorder.manifest.frames.is_empty() {
+            let written = recorder.folder.write("cloth.npz", |file| {
+                fields::write_cloth(&dyed.cloth, &dyed.experiment, file)
+            });
+            recorder.failed = written.err();
+        }
+        let state = State::take(&dyed, clock.step, clock.hours());
+        recorder.give(Job::State {
+            name: format!("state_{frame:05}.npz"),
+            state: Box::new(state),
+        });
+    }
+    let hours = clock.hours();
+    recorder.manifest.frames.push(Frame {
+        file: name,
+        step: clock.step,
+        hours,
+    });
+    manifest::add_line(&mut recorder.ledger, clock.step, hours, &ledger);
+}

@@ -1,0 +1,235 @@
+//! Errors in scenarios, told so that the reader can mend them: place, line, caret, what was
+//! expected, and the nearest valid name.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::check::Problem;
+use super::locate::locate;
+
+/// Why a scenario cannot be run.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// Neither a file nor a bundled scenario has this name.
+    #[error("there is no file and no bundled scenario named `{name}`{}\n`dyelapse list` shows the bundled scenarios", did_you_mean(.nearest.as_deref()))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The bundled name that is most like it.
+        nearest: Option<String>,
+    },
+    /// The file cannot be read.
+    #[error("cannot read the scenario {}: {why}", .path.display())]
+    Unreadable {
+        /// The scenario file.
+        path: PathBuf,
+        /// The reason.
+        why: String,
+    },
+    /// The text says something that is not RON, not a scenario, or not possible.
+    #[error("{0}")]
+    Source(Box<SourceError>),
+    /// A scenario made by a program, not by a file, says something impossible.
+    #[error("the scenario says something impossible: {0}")]
+    Problem(#[from] Problem),
+    /// The cloth does not fit in memory.
+    #[error("{0}")]
+    Memory(#[from] crate::memory::MemoryError),
+}
+
+/// An error at a place in the text of a scenario.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SourceError {
+    /// The file, or the bundled name.
+    pub name: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Characters that the caret underlines.
+    pub width: usize,
+    /// The line itself.
+    pub text: String,
+    /// What is wrong, and what was expected.
+    pub what: String,
+}
+
+impl fmt::Display for SourceError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let number = self.line.to_string();
+        let margin = " ".repeat(number.len());
+        let (name, line, column, what) = (&self.name, self.line, self.column, &self.what);
+        writeln!(f, "{name}:{line}:{column}: {what}")?;
+        writeln!(f, "{margin} |")?;
+        // Tabs become one space each, so that the caret stands where the column says.
+        writeln!(f, "{number} | {}", self.text.replace('\t', " "))?;
+        let before = " ".repeat(self.column.saturating_sub(1));
+        write!(f, "{margin} | {before}{}", "^".repeat(self.width.max(1)))
+    }
+}
+
+impl SourceError {
+    /// An error about the bytes `begin..end` of `source`.
+    fn between(name: &str, source: &str, begin: usize, end: usize, what: String) -> Self {
+        let begin = floor_boundary(source, begin);
+        let end = floor_boundary(source, end.max(begin));
+        let line_begin = source[..begin].rfind('\n').map_or(0, |i| i + 1);
+        let text = source[line_begin..].lines().next().unwrap_or("");
+        let column = source[line_begin..begin].chars().count() + 1;
+        let marked = source[begin..end].lines().next().unwrap_or("").trim_end();
+        SourceError {
+            name: name.into(),
+            line: source[..begin].matches('\n').count() + 1,
+            column,
+            width: marked.chars().count().clamp(1, 60),
+            text: shortened(text, column + 60),
+            what,
+        }
+    }
+
+    /// What RON could not make a scenario of.
+    pub(super) fn from_ron(name: &str, source: &str, error: &ron::error::SpannedError) -> Self {
+        let begin = offset(source, error.span.start);
+        let end = offset(source, error.span.end);
+        let (begin, end) = token_near(source, begin, end, &error.code);
+        SourceError::between(name, source, begin, end, describe(&error.code))
+    }
+
+    /// A value that parsed but cannot be.
+    pub(super) fn from_problem(name: &str, source: &str, problem: &Problem) -> Self {
+        let (begin, end) = locate(source, &problem.path).map_or((0, 0), |f| (f.begin, f.end));
+        SourceError::between(name, source, begin, end, problem.to_string())
+    }
+}
+
+fn floor_boundary(source: &str, at: usize) -> usize {
+    let mut at = at.min(source.len());
+    while !source.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// A line cut to a readable length.
+fn shortened(line: &str, most: usize) -> String {
+    let most = most.max(120);
+    if line.chars().count() <= most {
+        return line.into();
+    }
+    line.chars().take(most).chain("…".chars()).collect()
+}
+
+/// Byte offset of a line and column that count from 1.
+fn offset(source: &str, position: ron::error::Position) -> usize {
+    let line_begin = source
+        .split_inclusive('\n')
+        .take(position.line.saturating_sub(1))
+        .map(str::len)
+        .sum::<usize>();
+    let line = &source[line_begin.min(source.len())..];
+    line_begin
+        + line
+            .chars()
+            .take(position.col.saturating_sub(1))
+            .map(char::len_utf8)
+            .sum::<usize>()
+}
+
+/// The word that an error is about: RON's span may begin before it or end after it.
+fn token_near(source: &str, begin: usize, end: usize, code: &ron::Error) -> (usize, usize) {
+    use ron::Error as E;
+    let named = match code {
+        E::NoSuchStructField { found, .. } | E::NoSuchEnumVariant { found, .. } => Some(&**found),
+        E::DuplicateStructField { field, .. } => Some(*field),
+        E::ExpectedDifferentStructName { found, .. } => Some(&**found),
+        _ => None,
+    };
+    if let Some(word) = named.filter(|word| !word.is_empty()) {
+        // The parser stands at or just behind the name.
+        let until = source.len().min(floor_boundary(source, end) + word.len());
+        let until = floor_boundary(source, until);
+        if let Some(at) = source[..until].rfind(word) {
+            return (at, at + word.len());
+        }
+    }
+    let points_at_value = matches!(
+        code,
+        E::InvalidValueForType { .. } | E::Message(_) | E::IntegerOutOfBounds
+    );
+    if points_at_value && begin < end {
+        let text = &source[floor_boundary(source, begin)..floor_boundary(source, end)];
+        let blank = text.len() - text.trim_start().len();
+        return (begin + blank, end);
+    }
+    (end, end + 1)
+}
+
+fn describe(code: &ron::Error) -> String {
+    use ron::Error as E;
+    let of = |outer: &Option<String>| match outer {
+        Some(outer) => format!(" in `{outer}`"),
+        None => String::new(),
+    };
+    match code {
+        E::NoSuchStructField {
+            expected,
+            found,
+            outer,
+        } => format!(
+            "there is no field `{found}`{}{}\nexpected one of: {}",
+            of(outer),
+            did_you_mean(nearest(found, expected.iter().copied())),
+            expected.join(", ")
+        ),
+        E::NoSuchEnumVariant {
+            expected,
+            found,
+            outer,
+        } => format!(
+            "`{found}` is not a {}{}\nexpected one of: {}",
+            outer.as_deref().unwrap_or("choice"),
+            did_you_mean(nearest(found, expected.iter().copied())),
+            expected.join(", ")
+        ),
+        E::MissingStructField { field, outer } => {
+            format!("the field `{field}` is missing{}", of(outer))
+        }
+        E::DuplicateStructField { field, outer } => {
+            format!("the field `{field}` is given twice{}", of(outer))
+        }
+        E::InvalidValueForType { expected, found } => {
+            format!("expected {expected}, but found {found}")
+        }
+        E::ExceededRecursionLimit => "this is nested too deeply".into(),
+        E::Eof => "the text ends too early: a bracket or quote is not closed".into(),
+        E::TrailingCharacters => "expected the end of the scenario here".into(),
+        other => {
+            let text = other.to_string();
+            let mut letters = text.chars();
+            match letters.next() {
+                Some(first) => first.to_lowercase().chain(letters).collect(),
+                None => text,
+            }
+        }
+    }
+}
+
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |name| format!("; did you mean `{name}`?"))
+}
+
+/// The valid name most like what was written, if any is.
+pub(super) fn nearest<'a>(
+    written: &str,
+    valid: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let likeness = |name: &str| strsim::jaro_winkler(&written.to_lowercase(), &name.to_lowercase());
+    valid
+        .into_iter()
+        .map(|name| (likeness(name), name))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name)
+}

@@ -1,0 +1,101 @@
+//! The pictures that a scenario's patterns name, loaded and checked before anything runs.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use image::{ImageReader, Limits};
+
+use super::check::{Checker, Problem};
+use crate::pattern::{Fit, Pattern, Raster};
+
+/// Loaded pictures by the name that the scenario gives them.
+#[derive(Debug, Clone, Default)]
+pub struct Images {
+    rasters: BTreeMap<String, Raster>,
+}
+
+/// The most memory that decoding one picture may take, bytes.
+const DECODING_LIMIT: u64 = 4 << 30;
+
+impl Images {
+    /// The picture of this name, if it was loaded.
+    pub fn get(&self, file: &str) -> Option<&Raster> {
+        self.rasters.get(file)
+    }
+
+    /// The names of all pictures.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.rasters.keys().map(String::as_str)
+    }
+
+    /// Loads every picture that `patterns` name, from files beside the scenario in `folder`.
+    ///
+    /// # Errors
+    /// A [`Problem`] at the pattern, naming the file, if it is missing, corrupt or of another size
+    /// than the cloth.
+    pub(super) fn load(
+        patterns: &[(&Pattern, Checker)],
+        folder: &Path,
+        cloth: (usize, usize),
+    ) -> Result<Self, Problem> {
+        let mut images = Images::default();
+        for (pattern, at) in patterns {
+            let Pattern::Image { file, fit } = pattern else {
+                continue;
+            };
+            let path = folder.join(file);
+            let named = |why: String| {
+                at.field("file")
+                    .problem(format!("the picture {}: {why}", path.display()))
+            };
+            let (width, height) = dimensions(&path).map_err(named)?;
+            let (nx, ny) = cloth;
+            if *fit == Fit::Exact && (width, height) != cloth {
+                return Err(named(format!(
+                    "it has {width}×{height} pixels but the cloth has {nx}×{ny} cells; \
+                     `fit: Stretch` fits it to the cloth"
+                )));
+            }
+            if !images.rasters.contains_key(file) {
+                images.rasters.insert(file.clone(), decode(&path).map_err(named)?);
+            }
+        }
+        Ok(images)
+    }
+}
+
+fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>, String> {
+    if path.is_dir() {
+        return Err("it is a folder".into());
+    }
+    let mut reader = ImageReader::open(path)
+        .and_then(ImageReader::with_guessed_format)
+        .map_err(|why| format!("it cannot be read: {why}"))?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(DECODING_LIMIT);
+    reader.limits(limits);
+    Ok(reader)
+}
+
+fn dimensions(path: &PathBuf) -> Result<(usize, usize), String> {
+    let (width, height) = reader(path)?.into_dimensions().map_err(not_a_picture)?;
+    Ok((width as usize, height as usize))
+}
+
+/// Brightness from 0 to 1; what is transparent counts as black.
+fn decode(path: &PathBuf) -> Result<Raster, String> {
+    let image = reader(path)?.decode().map_err(not_a_picture)?;
+    let image = image.to_luma_alpha32f();
+    Ok(Raster {
+        nx: image.width() as usize,
+        ny: image.height() as usize,
+        values: image
+            .pixels()
+            .map(|pixel| (pixel.0[0] * pixel.0[1]).clamp(0.0, 1.0))
+            .collect(),
+    })
+}
+
+fn not_a_picture(why: image::ImageError) -> String {
+    format!("it is not a whole PNG or JPEG: {why}")
+}

@@ -1,0 +1,34 @@
+//! The scenarios that come with the program, so that they run from any folder.
+
+use include_dir::{Dir, include_dir};
+
+static SCENARIOS: Dir = include_dir!("$CARGO_MANIFEST_DIR/assets/scenarios");
+
+/// A scenario that comes with the program.
+#[derive(Debug, Clone, Copy)]
+pub struct Bundled {
+    /// Its name, such as `seikaiha`.
+    pub name: &'static str,
+    /// Its text in RON.
+    pub text: &'static str,
+}
+
+/// All bundled scenarios, by name.
+pub fn bundled() -> impl Iterator<Item = Bundled> {
+    SCENARIOS.files().filter_map(|file| {
+        let path = file.path();
+        let name = path.file_stem()?.to_str()?;
+        let is_ron = path.extension().is_some_and(|ext| ext == "ron");
+        is_ron.then_some(Bundled {
+            name,
+            text: file.contents_utf8()?,
+        })
+    })
+}
+
+/// The names of all bundled scenarios, sorted.
+pub fn names() -> Vec<&'static str> {
+    let mut names: Vec<_> = bundled().map(|scenario| scenario.name).collect();
+    names.sort_unstable();
+    names
+}

@@ -1,0 +1,142 @@
+//! What a scenario says about the picture: which dye is shown, in which colours, on which yarns.
+
+use serde::{Deserialize, Serialize};
+
+use super::check::{Checker, Problem};
+
+/// The most pixels along one side of a cell.
+pub const LARGEST_SCALE: u32 = 64;
+
+/// How the cloth is drawn (paper D §4.3).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LookSpec {
+    /// Which dye is shown.
+    pub show: Show,
+    /// The colours of dyed cloth from the lightest to the darkest.
+    pub colours: Colours,
+    /// The amount of dye in a cell that has the darkest colour. Left out: as much as the cloth holds.
+    pub darkest_at: Option<f64>,
+    /// Pixels along one side of a cell.
+    pub pixels_per_cell: u32,
+    /// How the yarns look.
+    pub yarn: YarnLook,
+}
+
+impl Default for LookSpec {
+    fn default() -> Self {
+        LookSpec {
+            show: Show::FreeAndBound,
+            colours: Colours::Indigo,
+            darkest_at: None,
+            pixels_per_cell: 1,
+            yarn: YarnLook::default(),
+        }
+    }
+}
+
+/// Which dye is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Show {
+    /// All dye in the cloth.
+    FreeAndBound,
+    /// Only what has bound to the fibre: the cloth after rinsing (paper D Fig 9, lower row).
+    BoundOnly,
+}
+
+/// Colours of dyed cloth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Colours {
+    /// Cotton dyed with indigo.
+    Indigo,
+    /// Cotton dyed with madder.
+    Madder,
+    /// Cotton dyed with walnut husks.
+    Walnut,
+    /// Three colours as (hue in degrees, saturation 0 to 1, value 0 to 1).
+    Stops {
+        /// Undyed cloth.
+        lightest: (f64, f64, f64),
+        /// Half dyed cloth.
+        middle: (f64, f64, f64),
+        /// Fully dyed cloth.
+        darkest: (f64, f64, f64),
+    },
+}
+
+impl Colours {
+    /// The three stops in HSV, lightest first.
+    pub fn stops(&self) -> [(f64, f64, f64); 3] {
+        match *self {
+            Colours::Indigo => [(200.0, 0.03, 0.97), (211.0, 0.62, 0.66), (226.0, 0.78, 0.30)],
+            Colours::Madder => [(30.0, 0.05, 0.97), (8.0, 0.66, 0.76), (354.0, 0.82, 0.42)],
+            Colours::Walnut => [(40.0, 0.07, 0.97), (29.0, 0.52, 0.62), (20.0, 0.66, 0.28)],
+            Colours::Stops {
+                lightest,
+                middle,
+                darkest,
+            } => [lightest, middle, darkest],
+        }
+    }
+}
+
+/// How a yarn is shaded: fibres wound in a helix around it (paper D §4.3.1; model section 6).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct YarnLook {
+    /// Length of one full turn of the twist in yarn widths; negative for an S twist.
+    pub turn: f64,
+    /// Fibres that are seen around the yarn.
+    pub fibres: u32,
+    /// How deep the grooves between the fibres are, 0 to 1.
+    pub roughness: f64,
+    /// How differently thick and bright the yarns are, 0 to 1.
+    pub unevenness: f64,
+}
+
+impl Default for YarnLook {
+    fn default() -> Self {
+        YarnLook {
+            turn: 3.0,
+            fibres: 12,
+            roughness: 0.3,
+            unevenness: 0.35,
+        }
+    }
+}
+
+impl LookSpec {
+    pub(super) fn check(&self, at: &Checker) -> Result<(), Problem> {
+        at.field("pixels_per_cell")
+            .within(self.pixels_per_cell, 1..=LARGEST_SCALE)?;
+        if let Some(amount) = self.darkest_at {
+            at.field("darkest_at").within(amount, 0.001..=1.0)?;
+        }
+        if let Colours::Stops {
+            lightest,
+            middle,
+            darkest,
+        } = self.colours
+        {
+            for (name, (hue, saturation, value)) in
+                [("lightest", lightest), ("middle", middle), ("darkest", darkest)]
+            {
+                let at = at.field("colours").field(name);
+                at.item(0).within(hue, 0.0..=360.0)?;
+                at.item(1).within(saturation, 0.0..=1.0)?;
+                at.item(2).within(value, 0.0..=1.0)?;
+            }
+        }
+        let at = at.field("yarn");
+        let turn = self.yarn.turn;
+        if !(0.25..=1000.0).contains(&turn.abs()) {
+            return Err(at.field("turn").problem(format!(
+                "0.25 to 1000 (or −0.25 to −1000 for an S twist) is allowed, but this is {turn}"
+            )));
+        }
+        at.field("fibres").within(self.yarn.fibres, 1..=1000)?;
+        at.field("roughness").within(self.yarn.roughness, 0.0..=1.0)?;
+        at.field("unevenness").within(self.yarn.unevenness, 0.0..=1.0)
+    }
+}

@@ -1,0 +1,101 @@
+//! Scenarios: what is dyed, how, and what is recorded of it, as RON files that people can read.
+//!
+//! [`Scenario`] holds what a file says; [`Experiment`] is a scenario that has been read, checked
+//! and given its pictures, ready to run. `docs` of the fields are the reference of the format.
+
+pub mod check;
+mod chemistry;
+mod error;
+mod experiment;
+mod fabric;
+mod images;
+mod library;
+mod locate;
+mod look;
+mod process;
+pub mod units;
+
+use serde::{Deserialize, Serialize};
+
+pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
+pub use error::{ScenarioError, SourceError};
+pub use experiment::{Experiment, Origin};
+pub use fabric::{ClothSpec, Paths, YarnSpec};
+pub use images::Images;
+pub use library::{Bundled, bundled, names as bundled_names};
+pub use look::{Colours, LARGEST_SCALE, LookSpec, Show, YarnLook};
+pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, SupplySpec};
+pub use units::{Length, Time};
+
+use crate::pattern::Pattern;
+use check::{Checker, Problem};
+
+/// Everything that one dyeing is made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// What it shows, in a few words.
+    pub title: String,
+    /// Seed of everything random; another number gives another cloth of the same kind.
+    #[serde(default)]
+    pub seed: u64,
+    /// The cloth.
+    pub cloth: ClothSpec,
+    /// The dye in the bath.
+    #[serde(default)]
+    pub dye: DyeSpec,
+    /// Where and when dye is given.
+    pub supply: Vec<SupplySpec>,
+    /// Where the cloth is tied, clamped or pasted: the volume ratio B, 0 free to 1 shut.
+    #[serde(default)]
+    pub resist: Pattern,
+    /// How dye binds to fibre. Left out: it does not.
+    #[serde(default)]
+    pub adsorption: Option<AdsorptionSpec>,
+    /// How long dyeing lasts.
+    pub process: ProcessSpec,
+    /// How the cloth is drawn.
+    #[serde(default)]
+    pub look: LookSpec,
+    /// What a recording keeps.
+    #[serde(default)]
+    pub record: RecordSpec,
+}
+
+impl Scenario {
+    /// Checks every value against what is possible.
+    ///
+    /// # Errors
+    /// The first [`Problem`], with its field path and what is allowed there.
+    pub fn check(&self) -> Result<(), Problem> {
+        let at = Checker::root();
+        self.cloth.check(&at.field("cloth"))?;
+        self.process.check(&at.field("process"))?;
+        self.dye.check(&at.field("dye"))?;
+        let (cell_mm, step_h) = (self.cloth.cell_mm, self.process.step_h);
+        for (i, supply) in self.supply.iter().enumerate() {
+            supply.check(&at.field("supply").item(i), cell_mm, step_h)?;
+        }
+        self.resist.check(&at.field("resist"), cell_mm)?;
+        if let Some(adsorption) = &self.adsorption {
+            adsorption.check(&at.field("adsorption"))?;
+        }
+        self.look.check(&at.field("look"))?;
+        self.record.check(&at.field("record"), &self.process)
+    }
+
+    /// Every pattern that the scenario names, each with its place.
+    pub fn patterns(&self) -> Vec<(&Pattern, Checker)> {
+        let at = Checker::root();
+        let mut waiting: Vec<_> = vec![(&self.resist, at.field("resist"))];
+        for (i, supply) in self.supply.iter().enumerate() {
+            waiting.push((supply.shape(), at.field("supply").item(i).field("shape")));
+        }
+        let mut all = Vec::new();
+        while let Some((pattern, place)) = waiting.pop() {
+            waiting.extend(pattern.parts(&place));
+            all.push((pattern, place));
+        }
+        all
+    }
+}

@@ -1,0 +1,153 @@
+//! What a scenario says about the process: when dye is given, how long it lasts, what is recorded.
+
+use serde::{Deserialize, Serialize};
+
+use super::check::{Checker, Problem};
+use super::units::Time;
+use crate::pattern::Pattern;
+
+/// The most frames one recording may have.
+pub const MOST_FRAMES: u32 = 1_000_000;
+
+/// One way in which dye is given to the cloth (paper D §2; model section 3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum SupplySpec {
+    /// Given once: the liquid there gets at least this much dye.
+    Dose {
+        /// Where on the cloth; half a pattern gives half the dose.
+        shape: Pattern,
+        /// Concentration of the dye in the liquid, 0 to 1 (full).
+        #[serde(default = "full")]
+        dose: f64,
+        /// When.
+        #[serde(default = "start")]
+        at: Time,
+    },
+    /// Kept up: the liquid there stays at this concentration while it lasts.
+    Hold {
+        /// Where on the cloth; half a pattern holds half the dose.
+        shape: Pattern,
+        /// Concentration of the dye in the liquid, 0 to 1 (full).
+        #[serde(default = "full")]
+        dose: f64,
+        /// From when.
+        #[serde(default = "start")]
+        from: Time,
+        /// Until when. Left out: to the end.
+        #[serde(default)]
+        until: Option<Time>,
+    },
+}
+
+fn full() -> f64 {
+    1.0
+}
+
+fn start() -> Time {
+    Time::Steps(0)
+}
+
+impl SupplySpec {
+    /// Where dye is given.
+    pub fn shape(&self) -> &Pattern {
+        match self {
+            SupplySpec::Dose { shape, .. } | SupplySpec::Hold { shape, .. } => shape,
+        }
+    }
+
+    pub(super) fn check(&self, at: &Checker, cell_mm: f64, step_h: f64) -> Result<(), Problem> {
+        self.shape().check(&at.field("shape"), cell_mm)?;
+        match self {
+            SupplySpec::Dose { dose, at: when, .. } => {
+                at.field("dose").within(*dose, 0.0..=1.0)?;
+                when.check(&at.field("at"), step_h)
+            }
+            SupplySpec::Hold {
+                dose, from, until, ..
+            } => {
+                at.field("dose").within(*dose, 0.0..=1.0)?;
+                from.check(&at.field("from"), step_h)?;
+                let Some(until) = until else { return Ok(()) };
+                until.check(&at.field("until"), step_h)?;
+                if until.steps(step_h) < from.steps(step_h) {
+                    return Err(at.field("until").problem(format!(
+                        "a hold ends after it begins, but {until:?} is before {from:?}"
+                    )));
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// How long dyeing lasts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProcessSpec {
+    /// From the first dye to the end.
+    pub duration: Time,
+    /// Δt, the length of one step in hours.
+    #[serde(default = "default_step_h")]
+    pub step_h: f64,
+}
+
+/// Δt of paper D's Table 1, h.
+fn default_step_h() -> f64 {
+    0.0005
+}
+
+impl ProcessSpec {
+    /// Steps from the first dye to the end.
+    pub fn steps(&self) -> u64 {
+        self.duration.steps(self.step_h)
+    }
+
+    pub(super) fn check(&self, at: &Checker) -> Result<(), Problem> {
+        at.field("step_h").within(self.step_h, 1e-9..=24.0)?;
+        self.duration.check(&at.field("duration"), self.step_h)
+    }
+}
+
+/// What a recording keeps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RecordSpec {
+    /// Frames of the time-lapse, evenly spread from the first moment to the last.
+    pub frames: u32,
+    /// The moments on the contact sheet. Left out: eight of the frames.
+    pub sheet: Vec<Time>,
+}
+
+impl Default for RecordSpec {
+    fn default() -> Self {
+        RecordSpec {
+            frames: 25,
+            sheet: Vec::new(),
+        }
+    }
+}
+
+impl RecordSpec {
+    pub(super) fn check(&self, at: &Checker, process: &ProcessSpec) -> Result<(), Problem> {
+        at.field("frames").within(self.frames, 1..=MOST_FRAMES)?;
+        let at = at.field("sheet");
+        if self.sheet.len() > 100 {
+            return Err(at.problem(format!(
+                "a sheet has room for 100 moments, but this lists {}",
+                self.sheet.len()
+            )));
+        }
+        for (i, time) in self.sheet.iter().enumerate() {
+            let at = at.item(i);
+            time.check(&at, process.step_h)?;
+            if time.steps(process.step_h) > process.steps() {
+                return Err(at.problem(format!(
+                    "the process ends at step {}, but this asks for {time:?}",
+                    process.steps()
+                )));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,184 @@
+//! The order of the process, and its clock.
+//!
+//! | schedule | runs | sets, in order |
+//! |---|---|---|
+//! | [`Prepare`] | once, before anything | [`PrepareSet::Cloth`], [`PrepareSet::Stages`] |
+//! | [`DyeStep`] | once for every (split) step | [`DyeSet::Supply`], [`DyeSet::Diffusion`], [`DyeSet::Adsorption`], [`DyeSet::Tick`] |
+//! | [`DyeFrame`] | whenever someone looks | [`FrameSet::Supply`], [`FrameSet::Measure`], [`FrameSet::Draw`], [`FrameSet::Keep`] |
+//!
+//! The clock belongs to the process: steps and hours, never wall time or frame rate.
+
+use std::ops::Deref;
+use std::sync::Arc;
+
+use bevy::ecs::schedule::{
+    LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor,
+};
+use bevy::prelude::*;
+
+use crate::diffusion::Conductances;
+use crate::scenario::Experiment;
+
+/// Builds the cloth and everything that the stages keep. Runs once.
+#[derive(ScheduleLabel, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Prepare;
+
+/// Advances the process by one step, or by one part of it where [`Conductances::splits`] says so.
+#[derive(ScheduleLabel, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct DyeStep;
+
+/// Shows the cloth as it is at this very moment. Changes nothing that a later step would not.
+#[derive(ScheduleLabel, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct DyeFrame;
+
+/// What is prepared, in order.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PrepareSet {
+    /// Responsible for weaving the [`Cloth`](crate::cloth::Cloth).
+    Cloth,
+    /// Responsible for what each stage derives from the cloth.
+    Stages,
+}
+
+/// The stages of one step, in order.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DyeSet {
+    /// Responsible for dye entering the cloth.
+    Supply,
+    /// Responsible for dye moving.
+    Diffusion,
+    /// Responsible for dye binding.
+    Adsorption,
+    /// Responsible for the clock.
+    Tick,
+}
+
+/// What happens for one frame, in order.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FrameSet {
+    /// Responsible for the supply due at this moment, which the next step would otherwise bring.
+    Supply,
+    /// Responsible for taking stock of the dye.
+    Measure,
+    /// Responsible for the picture of the cloth.
+    Draw,
+    /// Responsible for keeping what was drawn: recorder, window.
+    Keep,
+}
+
+/// The experiment that runs.
+#[derive(Resource, Debug, Clone)]
+pub struct TheExperiment(pub Arc<Experiment>);
+
+impl Deref for TheExperiment {
+    type Target = Experiment;
+
+    fn deref(&self) -> &Experiment {
+        &self.0
+    }
+}
+
+/// The clock of the process.
+#[derive(Resource, Debug, Clone, Copy, PartialEq)]
+pub struct ProcessClock {
+    /// Whole steps done.
+    pub step: u64,
+    /// Parts of the running step done; 0 between steps.
+    pub part: u32,
+    /// Δt, the length of a step in hours.
+    pub step_h: f64,
+}
+
+impl ProcessClock {
+    /// Hours of dyeing done.
+    pub fn hours(&self) -> f64 {
+        self.step as f64 * self.step_h
+    }
+}
+
+/// The schedules and the clock, which every other plugin hangs on.
+pub struct SchedulePlugin;
+
+impl Plugin for SchedulePlugin {
+    fn build(&self, app: &mut App) {
+        for schedule in [
+            Schedule::new(Prepare),
+            Schedule::new(DyeStep),
+            Schedule::new(DyeFrame),
+        ] {
+            app.add_schedule(in_one_thread(schedule));
+        }
+        app.configure_sets(Prepare, (PrepareSet::Cloth, PrepareSet::Stages).chain())
+            .configure_sets(
+                DyeStep,
+                (
+                    DyeSet::Supply,
+                    DyeSet::Diffusion,
+                    DyeSet::Adsorption,
+                    DyeSet::Tick,
+                )
+                    .chain(),
+            )
+            .configure_sets(
+                DyeFrame,
+                (
+                    FrameSet::Supply,
+                    FrameSet::Measure,
+                    FrameSet::Draw,
+                    FrameSet::Keep,
+                )
+                    .chain(),
+            )
+            .add_systems(Prepare, start_clock.in_set(PrepareSet::Cloth))
+            .add_systems(DyeStep, tick.in_set(DyeSet::Tick));
+    }
+}
+
+/// The loops inside a system use all cores; systems themselves run one after another, in an order
+/// that is never left open.
+fn in_one_thread(mut schedule: Schedule) -> Schedule {
+    schedule
+        .set_executor(SingleThreadedExecutor::new())
+        .set_build_settings(ScheduleBuildSettings {
+            ambiguity_detection: LogLevel::Error,
+            ..default()
+        });
+    schedule
+}
+
+fn start_clock(mut commands: Commands, experiment: Res<TheExperiment>) {
+    commands.insert_resource(ProcessClock {
+        step: 0,
+        part: 0,
+        step_h: experiment.scenario.process.step_h,
+    });
+}
+
+fn tick(mut clock: ResMut<ProcessClock>, conductances: Res<Conductances>) {
+    clock.part += 1;
+    if clock.part >= conductances.splits {
+        clock.part = 0;
+        clock.step += 1;
+    }
+}
+
+/// Runs [`DyeStep`] until the clock shows `step`, or `go_on` says no: it is asked after every step.
+///
+/// Returns whether the step was reached.
+pub fn advance_to(world: &mut World, step: u64, mut go_on: impl FnMut(u64) -> bool) -> bool {
+    let reached = world.try_schedule_scope(DyeStep, |world, schedule| {
+        loop {
+            let clock = world.resource::<ProcessClock>();
+            if clock.part == 0 {
+                if clock.step >= step {
+                    return true;
+                }
+                if !go_on(clock.step) {
+                    return false;
+                }
+            }
+            schedule.run(world);
+        }
+    });
+    reached.unwrap_or(false)
+}
