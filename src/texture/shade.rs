@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::yarn::{Point, YarnShade};
-use crate::cloth::{Cloth, Layer};
+use crate::cloth::{Cloth, Layer, Yarns};
 use crate::scenario::YarnLook;
 
 /// Shade of a gap that is open through both layers.
-const GAP_SHADE: f32 = 0.30;
+const GAP_SHADE: f32 = 0.50;
 /// Samples along one side of a cell at the least: what is finer than a pixel is averaged.
 const SAMPLES_A_CELL: usize = 4;
 
@@ -64,56 +64,68 @@ fn at(cloth: &Cloth, shades: &[YarnShade; 2], (y, x): (usize, usize), (v, u): (f
     if !cloth.fibre(layer, y, x) {
         return GAP_SHADE;
     }
+    let (warp, weft) = (cloth.warp.number(x), cloth.weft.number(y));
+    let warp_up = |e, p| if cloth.weave.warp_up(e, p) { 1.0 } else { -1.0 };
+    let weft_up = |e, p| -warp_up(e, p);
+    // Across and along each yarn, and the height of its axis there.
+    let warp_across = across(&cloth.warp, warp, u);
+    let weft_across = across(&cloth.weft, weft, v);
+    let repeat = (cloth.weave.ends(), cloth.weave.picks());
+    let warp_axis = axis(&cloth.weft, v, repeat.1, |crossing| warp_up(warp, crossing));
+    let weft_axis = axis(&cloth.warp, u, repeat.0, |crossing| weft_up(crossing, weft));
+    let warp_surface = warp_axis.height + round(warp_across);
+    let weft_surface = weft_axis.height + round(weft_across);
     let point = match layer {
-        Layer::Warp => on_yarn(cloth, layer, (x, u), v),
-        Layer::Weft => on_yarn(cloth, layer, (y, v), u),
+        Layer::Warp => Point {
+            yarn: warp,
+            across: warp_across,
+            along: v,
+            clearance: warp_surface - weft_surface,
+            slope: warp_axis.slope,
+        },
+        Layer::Weft => Point {
+            yarn: weft,
+            across: weft_across,
+            along: u,
+            clearance: weft_surface - warp_surface,
+            slope: weft_axis.slope,
+        },
     };
     shades[layer as usize].at(point)
 }
 
-/// A point on a yarn, `across` it at a cell and a place in cells, and `along` it in cells.
-fn on_yarn(cloth: &Cloth, layer: Layer, across: (usize, f32), along: f32) -> Point {
-    let (own, crossed) = match layer {
-        Layer::Warp => (&cloth.warp, &cloth.weft),
-        Layer::Weft => (&cloth.weft, &cloth.warp),
-    };
-    let yarn = own.number(across.0);
-    let middle = (yarn * own.pitch()) as f32 + own.width as f32 / 2.0;
-    let up = |crossing: usize| {
-        let warp_up = match layer {
-            Layer::Warp => cloth.weave.warp_up(yarn, crossing),
-            Layer::Weft => cloth.weave.warp_up(crossing, yarn),
-        };
-        if warp_up == (layer == Layer::Warp) {
-            1.0
-        } else {
-            -1.0
-        }
-    };
-    // In pitches from the middle of the first yarn that is crossed; the weave goes on beyond the
-    // edge of the cloth, so one repeat of two is added to stay above zero.
-    let place = (along - crossed.width as f32 / 2.0) / crossed.pitch() as f32;
-    let before = place.floor();
-    let from = up_at(&up, before, cloth);
-    let to = up_at(&up, before + 1.0, cloth);
-    let t = place - before;
-    // A smooth rise from one crossing to the next.
-    let rise = t * t * (3.0 - 2.0 * t);
-    Point {
-        yarn,
-        across: (across.1 - middle) / (own.width as f32 / 2.0),
-        along,
-        height: from + (to - from) * rise,
-        slope: (to - from) * 3.0 * t * (1.0 - t),
-    }
+/// The place across a yarn: −1 at one edge, 1 at the other, beyond in the gap.
+fn across(yarns: &Yarns, yarn: usize, place: f32) -> f32 {
+    let radius = yarns.width as f32 / 2.0;
+    (place - (yarn * yarns.pitch()) as f32 - radius) / radius
 }
 
-/// The height at a crossing that may lie one before the first.
-fn up_at(up: &impl Fn(usize) -> f32, crossing: f32, cloth: &Cloth) -> f32 {
-    if crossing < 0.0 {
-        let repeat = cloth.weave.ends() * cloth.weave.picks();
-        up(repeat - 1)
-    } else {
-        up(crossing as usize)
+/// The height of a round yarn over its axis, in radii; beyond its edge it falls on.
+fn round(across: f32) -> f32 {
+    let square = across * across;
+    if square < 1.0 { (1.0 - square).sqrt() } else { 1.0 - square }
+}
+
+/// Where the axis of a yarn runs between the face and the back of the cloth.
+struct Axis {
+    /// 1 on the face, −1 on the back.
+    height: f32,
+    /// Its change per pitch.
+    slope: f32,
+}
+
+/// The axis of a yarn at a place along it, in cells. `up` is its height at each crossing with
+/// `crossed`, and repeats.
+fn axis(crossed: &Yarns, place: f32, repeat: usize, up: impl Fn(usize) -> f32) -> Axis {
+    // In pitches from the middle of the first yarn that is crossed. The cloth begins half a yarn
+    // before it, so one repeat is added to stay above zero.
+    let place = (place - crossed.width as f32 / 2.0) / crossed.pitch() as f32;
+    let before = place.floor();
+    let crossing = (before + repeat as f32) as usize;
+    let (from, to) = (up(crossing), up(crossing + 1));
+    let t = place - before;
+    Axis {
+        height: from + (to - from) * t * t * (3.0 - 2.0 * t),
+        slope: (to - from) * 3.0 * t * (1.0 - t),
     }
 }

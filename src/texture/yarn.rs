@@ -10,13 +10,17 @@ use crate::cloth::Yarns;
 use crate::scenario::YarnLook;
 
 /// Where light comes from: left, up, and out of the cloth. A unit vector.
-const LIGHT: [f32; 3] = [-0.36, -0.48, 0.8];
+const LIGHT: [f32; 3] = [-0.30, -0.40, 0.866];
 /// Light from all around, as a share of all light on a surface that faces the viewer.
-const AMBIENT: f32 = 0.52;
-/// How much darker a yarn is where it has dived to the back of the cloth.
-const DEPTH_SHADE: f32 = 0.42;
+const AMBIENT: f32 = 0.66;
+/// How much darker a yarn is where others lie over it.
+const DEPTH_SHADE: f32 = 0.55;
+/// How much darker the edge of a yarn is than its middle, without any direct light.
+const EDGE_SHADE: f32 = 0.30;
+/// Makes up for what all shades together take away, so that undyed cotton is white.
+const BRIGHTNESS: f32 = 1.14;
 /// How steeply a yarn rises and dives, as height over half a pitch.
-const CRIMP: f32 = 0.85;
+const CRIMP: f32 = 0.55;
 
 /// A point on a yarn.
 #[derive(Debug, Clone, Copy)]
@@ -27,8 +31,9 @@ pub struct Point {
     pub across: f32,
     /// Place along it, in cells.
     pub along: f32,
-    /// Its height there: 1 on the face, −1 on the back.
-    pub height: f32,
+    /// How far its surface lies above that of the yarn which crosses it there, in yarn radii:
+    /// 2 and more on top of a crossing, less beside it, negative beneath one.
+    pub clearance: f32,
     /// How steeply the height changes along the yarn, per half pitch.
     pub slope: f32,
 }
@@ -83,7 +88,8 @@ impl YarnShade {
         let sine = point.across.clamp(-0.999, 0.999);
         let cosine = sqrtf(1.0 - sine * sine);
         self.light(point, sine, cosine)
-            * self.depth(point.height)
+            * self.depth(point.clearance)
+            * BRIGHTNESS
             * self.fibres(point, sine)
             * self.unevenness(point)
     }
@@ -99,22 +105,30 @@ impl YarnShade {
         let length = sqrtf(normal.iter().map(|n| n * n).sum());
         let facing: f32 = normal.iter().zip(LIGHT).map(|(n, l)| n * l).sum();
         let lit = (facing / length).max(0.0) / LIGHT[2];
-        AMBIENT * (0.6 + 0.4 * cosine) + (1.0 - AMBIENT) * lit
+        // Soft cotton scatters light: even its edges, turned away, are not dark.
+        AMBIENT * (1.0 - EDGE_SHADE * (1.0 - cosine)) + (1.0 - AMBIENT) * lit
     }
 
-    /// Less light the deeper a yarn lies under its neighbours.
-    fn depth(&self, height: f32) -> f32 {
-        let sunk = 0.5 - 0.5 * height;
-        1.0 - DEPTH_SHADE * sunk * (2.0 - sunk).max(0.0) * 0.75
+    /// The yarns that cross over this one keep light from it: the more, the less it stands out
+    /// above them.
+    fn depth(&self, clearance: f32) -> f32 {
+        let covered = ((1.0 - clearance) * 0.5).clamp(0.0, 1.0);
+        1.0 - DEPTH_SHADE * covered * covered
     }
 
-    /// Grooves between the fibres: phase χ = N(θ − 2πs/p), shade 1 − b + b·|cos(χ/2)|.
+    /// Grooves between the fibres. Fibres wind around the yarn with phase χ = N(θ − 2πs/p); even
+    /// ones shade it by 1 − b + b·|cos(χ/2)|. Spun fibres are short and of all sizes, so half of
+    /// the shade is chance along the same helix.
     fn fibres(&self, point: Point, sine: f32) -> f32 {
         let rough = self.look.roughness as f32;
         let theta = asinf(sine);
-        let turns = point.along / self.turn + self.phase[point.yarn];
+        let own = 53.0 * point.yarn as f32;
+        let stray = self.slub.get_noise_2d(point.along / (3.0 * self.radius), own + 500.0);
+        let turns = point.along / self.turn + self.phase[point.yarn] + 0.06 * stray;
         let chi = self.look.fibres as f32 * (theta - std::f32::consts::TAU * turns);
-        1.0 - rough + rough * cosf(0.5 * chi).abs() / std::f32::consts::FRAC_2_PI * 0.9
+        let even = 1.0 - cosf(0.5 * chi).abs();
+        let uneven = 0.5 - 0.5 * self.slub.get_noise_2d(0.32 * chi, own + point.along / (3.0 * self.radius));
+        1.0 - rough * (0.45 * even + 0.55 * uneven)
     }
 
     /// Thick and thin places along the yarn, and loose fibre on it.
@@ -126,6 +140,6 @@ impl YarnShade {
             point.along / (1.6 * self.radius),
             own + 1000.0 + 2.2 * point.across,
         );
-        self.brightness[point.yarn] * (1.0 + uneven * (0.10 * slub + 0.16 * fuzz))
+        self.brightness[point.yarn] * (1.0 + uneven * (0.08 * slub + 0.06 * fuzz))
     }
 }
