@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 use crate::cloth::Cloth;
-use crate::diffusion::{Conductances, FreeDye};
+use crate::diffusion::{Conductances, FreeDye, add};
 use crate::scenario::{AdsorptionSpec, Isotherm, Scenario};
 use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, TheExperiment};
 
@@ -76,6 +76,10 @@ impl Isotherm {
 pub struct Pore {
     /// c, the concentration of its liquid.
     pub c: f32,
+    /// What rounding has left over of c.
+    pub carry: f32,
+    /// A, its bound dye.
+    pub bound: f32,
     /// V_u, its free capacity.
     pub v_u: f32,
     /// V_d, its bound capacity.
@@ -88,22 +92,28 @@ pub struct Pore {
 /// [`MOST_EXCHANGE`](crate::diffusion::MOST_EXCHANGE), below 1 by more than rounding.
 const NEARLY_ALL: f32 = 1.0 - 1.0 / 131_072.0;
 
-/// One step of one cell: its concentration and bound dye afterwards.
+/// One step of one cell.
 ///
 /// `share` is D_ab·Δt/Δd² and less than 1. Neither limit is ever passed: a cell that already has
 /// more than the isotherm allows by now keeps it and binds no more.
 #[inline(always)]
-pub fn bind(isotherm: Isotherm, share: f32, pore: Pore, bound: f32) -> (f32, f32) {
+pub fn bind(isotherm: Isotherm, share: f32, pore: Pore) -> Pore {
     let phi = pore.c * pore.v_u;
     let limit = isotherm.limit(phi, pore.v_d).min(pore.v_d);
-    let after = (bound + share * phi).min(limit.max(bound));
+    let bound = (pore.bound + share * phi).min(limit.max(pore.bound));
     // Exactly what the bound dye grew by in float32, so that no rounding makes or loses dye. Where
     // rounding up would take nearly all that is there, or more, it waits for a later step.
-    let gained = after - bound;
+    let gained = bound - pore.bound;
     if gained > phi * NEARLY_ALL {
-        return (pore.c, bound);
+        return pore;
     }
-    (pore.c - gained * pore.per_v_u, after)
+    let (c, carry) = add(pore.c, pore.carry, -gained * pore.per_v_u);
+    Pore {
+        c,
+        carry,
+        bound,
+        ..pore
+    }
 }
 
 /// One (split) step of every cell.
@@ -112,19 +122,19 @@ pub fn step(
     share: f32,
     cloth: &Cloth,
     per_capacity: &[f32],
-    concentration: &mut [f32],
-    bound: &mut [f32],
+    free: &mut FreeDye,
+    bound: &mut BoundDye,
 ) {
-    // Chosen once, not for every cell.
+    // Chosen once, not for every cell: each closure is compiled for its own isotherm.
     match isotherm {
-        Isotherm::Partition { k } => each(cloth, per_capacity, concentration, bound, |pore, a| {
-            bind(Isotherm::Partition { k }, share, pore, a)
+        Isotherm::Partition { k } => each(cloth, per_capacity, free, bound, |pore| {
+            bind(Isotherm::Partition { k }, share, pore)
         }),
-        Isotherm::Freundlich { k, b } => each(cloth, per_capacity, concentration, bound, |pore, a| {
-            bind(Isotherm::Freundlich { k, b }, share, pore, a)
+        Isotherm::Freundlich { k, b } => each(cloth, per_capacity, free, bound, |pore| {
+            bind(Isotherm::Freundlich { k, b }, share, pore)
         }),
-        Isotherm::Langmuir { kl } => each(cloth, per_capacity, concentration, bound, |pore, a| {
-            bind(Isotherm::Langmuir { kl }, share, pore, a)
+        Isotherm::Langmuir { kl } => each(cloth, per_capacity, free, bound, |pore| {
+            bind(Isotherm::Langmuir { kl }, share, pore)
         }),
     }
 }
@@ -132,26 +142,34 @@ pub fn step(
 fn each(
     cloth: &Cloth,
     per_capacity: &[f32],
-    concentration: &mut [f32],
-    bound: &mut [f32],
-    bind: impl Fn(Pore, f32) -> (f32, f32) + Sync,
+    free: &mut FreeDye,
+    bound: &mut BoundDye,
+    bind: impl Fn(Pore) -> Pore + Sync,
 ) {
     const CELLS_A_TASK: usize = 1 << 14;
-    let tasks = concentration
+    let tasks = free
+        .concentration
         .par_chunks_mut(CELLS_A_TASK)
-        .zip(bound.par_chunks_mut(CELLS_A_TASK))
+        .zip(free.carry.par_chunks_mut(CELLS_A_TASK))
+        .zip(bound.amount.par_chunks_mut(CELLS_A_TASK))
         .zip(cloth.capacity_free.par_chunks(CELLS_A_TASK))
         .zip(cloth.capacity_bound.par_chunks(CELLS_A_TASK))
         .zip(per_capacity.par_chunks(CELLS_A_TASK));
-    tasks.for_each(|((((c, bound), v_u), v_d), per_v_u)| {
+    tasks.for_each(|(((((c, carry), bound), v_u), v_d), per_v_u)| {
         for i in 0..c.len() {
-            let pore = Pore {
+            // Clean water binds nothing; most of a cloth is clean most of the time.
+            if c[i] == 0.0 {
+                continue;
+            }
+            let pore = bind(Pore {
                 c: c[i],
+                carry: carry[i],
+                bound: bound[i],
                 v_u: v_u[i],
                 v_d: v_d[i],
                 per_v_u: per_v_u[i],
-            };
-            (c[i], bound[i]) = bind(pore, bound[i]);
+            });
+            (c[i], carry[i], bound[i]) = (pore.c, pore.carry, pore.bound);
         }
     });
 }
@@ -182,8 +200,8 @@ fn adsorption(
         share as f32,
         &cloth,
         &conductances.per_capacity,
-        &mut free.concentration,
-        &mut bound.amount,
+        &mut free,
+        &mut bound,
     );
 }
 

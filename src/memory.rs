@@ -5,10 +5,10 @@ use thiserror::Error;
 
 use crate::scenario::Scenario;
 
-/// Bytes of every field kept for one cell of a layer: two of free dye, two of conductances along
+/// Bytes of every field kept for one cell of a layer: three of free dye, two of conductances along
 /// the cloth, half of one between the layers, capacities and their inverse, bound dye, and half of
 /// the resist.
-const BYTES_PER_CELL: u128 = 36;
+const BYTES_PER_CELL: u128 = 40;
 /// Bytes for one pixel of the picture: what it shows and its shade, its colour, and the two frames
 /// that wait for the disk.
 const BYTES_PER_PIXEL: u128 = 8 + 3 * 3;

@@ -73,30 +73,30 @@ impl Supplies {
 }
 
 /// Brings free dye to what the supplies demand at `step`, and books what that took.
-pub fn bring(supplies: &mut Supplies, step: u64, cloth: &Cloth, c: &mut [f32], ledger: &mut Ledger) {
-    let mut book = |i: usize, before: f32, after: f32| {
-        let change = f64::from(after) - f64::from(before);
-        ledger.book(change * f64::from(cloth.capacity_free[i]));
-    };
+pub fn bring(
+    supplies: &mut Supplies,
+    step: u64,
+    cloth: &Cloth,
+    dye: &mut FreeDye,
+    ledger: &mut Ledger,
+) {
     for supply in &mut supplies.list {
-        match &mut supply.course {
+        let pours = match &mut supply.course {
             Course::Once { at, done } if !*done && step >= *at => {
                 *done = true;
-                for (i, dose) in &supply.cells {
-                    let (i, before) = (*i as usize, c[*i as usize]);
-                    // A dose is poured on: it never takes away what is there.
-                    c[i] = before.max(*dose);
-                    book(i, before, c[i]);
-                }
+                true
             }
-            course if course.holds(step) => {
-                for (i, kept) in &supply.cells {
-                    let (i, before) = (*i as usize, c[*i as usize]);
-                    c[i] = *kept;
-                    book(i, before, *kept);
-                }
+            course if course.holds(step) => false,
+            _ => continue,
+        };
+        for (i, concentration) in &supply.cells {
+            let i = *i as usize;
+            // A dose is poured on: it never takes away what is there. A hold does.
+            if pours && dye.concentration[i] >= *concentration {
+                continue;
             }
-            _ => {}
+            let grown = dye.set(i, *concentration);
+            ledger.book(grown * f64::from(cloth.capacity_free[i]));
         }
     }
 }
@@ -108,13 +108,7 @@ fn supply(
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
-    bring(
-        &mut supplies,
-        clock.step,
-        &cloth,
-        &mut dye.concentration,
-        &mut ledger,
-    );
+    bring(&mut supplies, clock.step, &cloth, &mut dye, &mut ledger);
 }
 
 fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {

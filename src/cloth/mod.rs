@@ -60,11 +60,27 @@ pub struct Cloth {
     pub capacity_bound: Vec<f32>,
 }
 
+/// What a cloth is assembled of; see the fields of [`Cloth`].
+#[derive(Debug, Clone)]
+pub struct Parts {
+    /// Side of a cell Δd, mm.
+    pub cell_mm: f64,
+    /// The yarns that run down.
+    pub warp: Yarns,
+    /// The yarns that run across.
+    pub weft: Yarns,
+    /// Which yarn is on top at every crossing.
+    pub weave: WeaveMatrix,
+    /// Porosity of the gaps in the weft layer and in the warp layer.
+    pub gap_porosity: [f64; 2],
+    /// The volume ratio B of every place.
+    pub resist: Raster,
+}
+
 impl Cloth {
     /// Weaves the cloth of a scenario and ties `resist` around it.
     pub fn weave(spec: &ClothSpec, resist: Raster, chance: Chance) -> Self {
         let (nx, ny) = spec.cells();
-        let grid = Grid { nx, ny };
         let warp_draws = Draws {
             porosity: Purpose::WarpPorosity,
             twist: Purpose::WarpTwist,
@@ -76,13 +92,36 @@ impl Cloth {
             squeeze: Purpose::WeftSqueeze,
         };
         let nominal = |porosity: f64| spec.gap_porosity.unwrap_or(porosity);
-        let mut cloth = Cloth {
-            grid,
+        Cloth::assemble(Parts {
             cell_mm: spec.cell_mm,
             warp: Yarns::lay(&spec.warp, spec.cell_mm, nx, chance, warp_draws),
             weft: Yarns::lay(spec.weft(), spec.cell_mm, ny, chance, weft_draws),
             weave: spec.weave.matrix(),
             gap_porosity: [nominal(spec.weft().porosity), nominal(spec.warp.porosity)],
+            resist,
+        })
+    }
+
+    /// Assembles a cloth of yarns that are already laid; the resist gives its size.
+    pub fn assemble(parts: Parts) -> Self {
+        let Parts {
+            cell_mm,
+            warp,
+            weft,
+            weave,
+            gap_porosity,
+            resist,
+        } = parts;
+        let mut cloth = Cloth {
+            grid: Grid {
+                nx: resist.nx,
+                ny: resist.ny,
+            },
+            cell_mm,
+            warp,
+            weft,
+            weave,
+            gap_porosity,
             resist,
             capacity_free: Vec::new(),
             capacity_bound: Vec::new(),

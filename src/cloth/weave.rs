@@ -262,6 +262,9 @@ mod tests {
     #[test]
     fn a_weave_drawn_by_hand_is_the_weave_it_draws() {
         let by_hand = Weave::Matrix(vec!["XX.".into(), ".XX".into(), "X.X".into()]);
-        assert_eq!(by_hand.matrix(), Weave::Twill { over: 2, under: 1 }.matrix());
+        assert_eq!(
+            by_hand.matrix(),
+            Weave::Twill { over: 2, under: 1 }.matrix()
+        );
     }
 }

@@ -40,7 +40,11 @@ impl Progress {
             Shown::Lines
         };
         let began = Instant::now();
-        let first = if matches!(shown, Shown::Bar(_)) { BAR_EVERY } else { LINE_EVERY };
+        let first = if matches!(shown, Shown::Bar(_)) {
+            BAR_EVERY
+        } else {
+            LINE_EVERY
+        };
         Progress {
             shown,
             steps,

@@ -67,7 +67,11 @@ pub fn run(arguments: &Record) -> ExitCode {
         Err(why) => {
             progress.give_up();
             complain(&why);
-            ExitCode::from(if why.is_bad_input() { BAD_INPUT } else { FAILED })
+            ExitCode::from(if why.is_bad_input() {
+                BAD_INPUT
+            } else {
+                FAILED
+            })
         }
     }
 }

@@ -7,10 +7,16 @@
 //! over its five neighbours. What one cell loses through a face the other gains, to the last bit,
 //! since c_j − c_i only changes sign; so dye is conserved up to the rounding of c itself.
 //!
+//! **Carry.** float32 near 1 has steps of 6·10⁻⁸; most cells of a slow process change by less in
+//! a step of 1.8 s, and rounding would stop them. So each cell carries on what rounding left over
+//! (compensated summation, Kahan 1965): c + carry is what the cell really holds, to about 48 bits,
+//! and dye is conserved over any number of steps.
+//!
 //! **Bounds.** With a_ij = G_ij/V_u,i and Σ_j a_ij ≤ 1, c_i moves towards a mean of its neighbours
 //! and never past it. [`Conductances`](super::Conductances) splits a step until
-//! Σ_j a_ij ≤ 1 − 2⁻¹⁶; that margin is larger than every rounding error of the sum below, and
-//! rounding is monotone, so 0 ≤ c ≤ 1 holds in float32 without any clamp.
+//! Σ_j a_ij ≤ 1 − 2⁻¹⁶. That margin is larger than every rounding error of the sum and than the
+//! carry, which is at most half a last bit of c; and rounding is monotone. So 0 ≤ c ≤ 1 holds in
+//! float32 without any clamp.
 
 use rayon::prelude::*;
 
@@ -56,9 +62,17 @@ impl Passage for WeiszZollinger {
 /// than 10⁻¹⁵ of one cell a step.
 const NOTHING: f32 = 1e-24;
 
+/// Adds `change` to a concentration and what it carries on; both are returned.
 #[inline(always)]
-fn settle(c: f32) -> f32 {
-    if c < NOTHING { 0.0 } else { c }
+pub(crate) fn add(c: f32, carry: f32, change: f32) -> (f32, f32) {
+    let change = change + carry;
+    let sum = c + change;
+    let left_over = change - (sum - c);
+    if sum < NOTHING {
+        (0.0, 0.0)
+    } else {
+        (sum, left_over)
+    }
 }
 
 /// Cells that one task advances: larger tasks leave a core idle at the end of a step, smaller ones
@@ -67,40 +81,64 @@ const CELLS_A_TASK: usize = 1 << 14;
 
 /// Advances the concentration of free dye `now` by one (split) step into `next`.
 ///
-/// Both hold `(layer, y, x)`. The result does not depend on the number of threads: every cell is
-/// computed from `now` alone.
-pub fn step(conductances: &Conductances, equilibrium: f64, now: &[f32], next: &mut [f32]) {
+/// All hold `(layer, y, x)`; `carry` is what rounding has left over so far. The result does not
+/// depend on the number of threads: every cell is computed from `now` and its own carry alone.
+pub fn step(
+    conductances: &Conductances,
+    equilibrium: f64,
+    now: &[f32],
+    carry: &mut [f32],
+    next: &mut [f32],
+) {
     if equilibrium < 1.0 {
         let passage = WeiszZollinger {
             equilibrium: equilibrium as f32,
         };
-        advance(conductances, passage, now, next);
+        advance(conductances, passage, now, carry, next);
     } else {
-        advance(conductances, Fick, now, next);
+        advance(conductances, Fick, now, carry, next);
     }
 }
 
-fn advance<P: Passage>(conductances: &Conductances, passage: P, now: &[f32], next: &mut [f32]) {
+fn advance<P: Passage>(
+    conductances: &Conductances,
+    passage: P,
+    now: &[f32],
+    carry: &mut [f32],
+    next: &mut [f32],
+) {
     let nx = conductances.grid.nx;
-    let (weft, warp) = next.split_at_mut(conductances.grid.layer_len());
     let rows_a_task = (CELLS_A_TASK / (2 * nx)).max(1);
-    let advance_rows = |(task, (weft, warp)): (usize, (&mut [f32], &mut [f32]))| {
-        let rows = weft.chunks_exact_mut(nx).zip(warp.chunks_exact_mut(nx));
-        for (i, (weft, warp)) in rows.enumerate() {
-            let y = task * rows_a_task + i;
-            advance_row(&Row::new(conductances, now, 0, y), passage, weft);
-            advance_row(&Row::new(conductances, now, 1, y), passage, warp);
-        }
-    };
+    let cells_a_task = rows_a_task * nx;
+    // A task takes the same rows of both layers, which need each other.
+    let layer = conductances.grid.layer_len();
+    let (weft, warp) = next.split_at_mut(layer);
+    let (weft_carry, warp_carry) = carry.split_at_mut(layer);
     let tasks = weft
-        .par_chunks_mut(rows_a_task * nx)
-        .zip(warp.par_chunks_mut(rows_a_task * nx))
+        .par_chunks_mut(cells_a_task)
+        .zip(warp.par_chunks_mut(cells_a_task))
+        .zip(weft_carry.par_chunks_mut(cells_a_task))
+        .zip(warp_carry.par_chunks_mut(cells_a_task))
         .enumerate();
-    if tasks.len() == 1 {
-        advance_rows((0, (weft, warp)));
-    } else {
-        tasks.for_each(advance_rows);
-    }
+    tasks.for_each(|(task, (((weft, warp), weft_carry), warp_carry))| {
+        for i in 0..weft.len() / nx {
+            let (y, cells) = (task * rows_a_task + i, i * nx..(i + 1) * nx);
+            let row = Row::new(conductances, now, 0, y);
+            advance_row(
+                &row,
+                passage,
+                &mut weft_carry[cells.clone()],
+                &mut weft[cells.clone()],
+            );
+            let row = Row::new(conductances, now, 1, y);
+            advance_row(
+                &row,
+                passage,
+                &mut warp_carry[cells.clone()],
+                &mut warp[cells],
+            );
+        }
+    });
 }
 
 /// Everything that one row of one layer is computed from; each slice is one row long.
@@ -143,11 +181,19 @@ impl<'a> Row<'a> {
 /// Computes one row. The terms are added in pairs of opposite neighbours, so that a mirrored cloth
 /// gives exactly the mirrored result.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn advance_row<P: Passage>(row: &Row, passage: P, next: &mut [f32]) {
+fn advance_row<P: Passage>(row: &Row, passage: P, carry: &mut [f32], next: &mut [f32]) {
     let n = next.len();
-    next[0] = row.end(passage, 0);
-    next[n - 1] = row.end(passage, n - 1);
-    if n < 3 {
+    (next[0], carry[0]) = add(row.here[0], carry[0], row.change_at_end(passage, 0));
+    if n == 1 {
+        return;
+    }
+    let last = n - 1;
+    (next[last], carry[last]) = add(
+        row.here[last],
+        carry[last],
+        row.change_at_end(passage, last),
+    );
+    if n == 2 {
         return;
     }
     // Between the ends every neighbour exists. Slices of one length, shifted against each other,
@@ -159,19 +205,20 @@ fn advance_row<P: Passage>(row: &Row, passage: P, next: &mut [f32]) {
     let (south, south_g) = (&row.south[1..][..m], &row.south_g[1..][..m]);
     let (beside, beside_g) = (&row.beside[1..][..m], &row.beside_g[1..][..m]);
     let per_capacity = &row.per_capacity[1..][..m];
-    let next = &mut next[1..][..m];
+    let (next, carry) = (&mut next[1..][..m], &mut carry[1..][..m]);
     for x in 0..m {
         let c = here[x];
         let across = passage.flow(west_g[x], c, west[x]) + passage.flow(east_g[x], c, east[x]);
         let down = passage.flow(north_g[x], c, north[x]) + passage.flow(south_g[x], c, south[x]);
         let beside = passage.flow(beside_g[x], c, beside[x]);
-        next[x] = settle(c + per_capacity[x] * ((across + down) + beside));
+        let change = per_capacity[x] * ((across + down) + beside);
+        (next[x], carry[x]) = add(c, carry[x], change);
     }
 }
 
 impl Row<'_> {
-    /// The cell at one end of the row, whose neighbour beyond the edge of the cloth is missing.
-    fn end<P: Passage>(&self, passage: P, x: usize) -> f32 {
+    /// The change of the cell at one end of the row, where the cloth has its edge.
+    fn change_at_end<P: Passage>(&self, passage: P, x: usize) -> f32 {
         let c = self.here[x];
         let west = match x.checked_sub(1) {
             Some(w) => passage.flow(self.east_g[w], c, self.here[w]),
@@ -184,6 +231,6 @@ impl Row<'_> {
         let down = passage.flow(self.north_g[x], c, self.north[x])
             + passage.flow(self.south_g[x], c, self.south[x]);
         let beside = passage.flow(self.beside_g[x], c, self.beside[x]);
-        settle(c + self.per_capacity[x] * (((west + east) + down) + beside))
+        self.per_capacity[x] * (((west + east) + down) + beside)
     }
 }

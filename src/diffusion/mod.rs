@@ -8,6 +8,7 @@ mod faces;
 use bevy::prelude::*;
 use rayon::prelude::*;
 
+pub(crate) use explicit::add;
 pub use explicit::step;
 pub use faces::Faces;
 
@@ -29,6 +30,8 @@ impl Plugin for DiffusionPlugin {
 pub struct FreeDye {
     /// The concentration at this moment.
     pub concentration: Vec<f32>,
+    /// What rounding has left over in each cell: it holds `concentration + carry`.
+    pub carry: Vec<f32>,
     /// Where the next step is computed.
     next: Vec<f32>,
 }
@@ -38,14 +41,26 @@ impl FreeDye {
     pub fn clean(grid: Grid) -> Self {
         FreeDye {
             concentration: vec![0.0; grid.len()],
+            carry: vec![0.0; grid.len()],
             next: vec![0.0; grid.len()],
         }
     }
 
     /// The free dye in the whole cloth: Σ φ = Σ c·V_u, in cell volumes.
     pub fn total(&self, cloth: &Cloth) -> f64 {
-        let amounts = self.concentration.iter().zip(&cloth.capacity_free);
-        amounts.map(|(c, v)| f64::from(*c) * f64::from(*v)).sum()
+        let exactly = self.concentration.iter().zip(&self.carry);
+        exactly
+            .zip(&cloth.capacity_free)
+            .map(|((c, carry), v_u)| (f64::from(*c) + f64::from(*carry)) * f64::from(*v_u))
+            .sum()
+    }
+
+    /// Sets the concentration of a cell; returns by how much it grew.
+    pub fn set(&mut self, i: usize, concentration: f32) -> f64 {
+        let before = f64::from(self.concentration[i]) + f64::from(self.carry[i]);
+        self.concentration[i] = concentration;
+        self.carry[i] = 0.0;
+        f64::from(concentration) - before
     }
 }
 
@@ -132,7 +147,13 @@ impl Conductances {
                     let i = at + x;
                     let west = if x > 0 { self.east[i - 1] } else { 0.0 };
                     let north = if y > 0 { self.south[i - nx] } else { 0.0 };
-                    let around = [self.east[i], west, self.south[i], north, self.beside[y * nx + x]];
+                    let around = [
+                        self.east[i],
+                        west,
+                        self.south[i],
+                        north,
+                        self.beside[y * nx + x],
+                    ];
                     let sum: f64 = around.iter().map(|g| f64::from(*g)).sum();
                     sum * f64::from(self.per_capacity[i])
                 };
@@ -178,9 +199,10 @@ fn diffusion(
 ) {
     let FreeDye {
         concentration,
+        carry,
         next,
     } = &mut *dye;
     let equilibrium = experiment.scenario.dye.equilibrium;
-    explicit::step(&conductances, equilibrium, concentration, next);
+    explicit::step(&conductances, equilibrium, concentration, carry, next);
     std::mem::swap(concentration, next);
 }

@@ -195,12 +195,10 @@ impl Pattern {
     /// # Errors
     /// A [`Problem`] that names the field and what is allowed there.
     pub fn check(&self, at: &Checker, cell_mm: f64) -> Result<(), Problem> {
-        let width = |name: &str, length: &Length| {
-            length.check(&at.field(name), cell_mm, 1e-3, LONGEST)
-        };
-        let any = |name: &str, length: &Length| {
-            length.check(&at.field(name), cell_mm, 0.0, LONGEST)
-        };
+        let width =
+            |name: &str, length: &Length| length.check(&at.field(name), cell_mm, 1e-3, LONGEST);
+        let any =
+            |name: &str, length: &Length| length.check(&at.field(name), cell_mm, 0.0, LONGEST);
         let place = |(x, y): (f64, f64)| {
             let at = at.field("centre");
             at.item(0).within(x, -10.0..=10.0)?;
@@ -318,7 +316,11 @@ impl Pattern {
         let parts = self.parts(&Checker::root());
         let deepest = parts.iter().map(|(part, _)| part.rasters_at_once()).max();
         // A blur keeps its source, an intermediate pass and its result.
-        let own = if matches!(self, Pattern::Blur { .. }) { 3 } else { 1 };
+        let own = if matches!(self, Pattern::Blur { .. }) {
+            3
+        } else {
+            1
+        };
         own + deepest.unwrap_or(0)
     }
 }

@@ -10,7 +10,11 @@ pub(super) fn paste(x: f64, y: f64, radius: f64, arcs: f64, open: f64) -> f32 {
     let distance = (0..5)
         .map(|up| lowest - f64::from(up))
         .map(|row| {
-            let shift = if row.rem_euclid(2.0) == 1.0 { radius } else { 0.0 };
+            let shift = if row.rem_euclid(2.0) == 1.0 {
+                radius
+            } else {
+                0.0
+            };
             let dy = y - row * radius / 2.0;
             // The nearest fan of this row, measured from its middle.
             let dx = (x - shift + radius).rem_euclid(2.0 * radius) - radius;

@@ -75,18 +75,14 @@ pub(super) fn rule(pattern: &Pattern, canvas: &Canvas) -> Shape {
         Pattern::Radial { from, to, centre } => {
             let (from, to, (cx, cy)) = (from.cells(mm), to.cells(mm), point(centre));
             let fade = (to - from).max(1e-9);
-            Box::new(move |x, y| {
-                ((to - distance(x - cx, y - cy)) / fade).clamp(0.0, 1.0) as f32
-            })
+            Box::new(move |x, y| ((to - distance(x - cx, y - cy)) / fade).clamp(0.0, 1.0) as f32)
         }
         Pattern::Ramp { angle } => {
             let (across, down) = direction(angle);
             // Along the slope, from the corner where it begins to the opposite one.
             let reach = across.abs() * width + down.abs() * height;
             let begin = across.min(0.0) * width + down.min(0.0) * height;
-            Box::new(move |x, y| {
-                ((x * across + y * down - begin) / reach).clamp(0.0, 1.0) as f32
-            })
+            Box::new(move |x, y| ((x * across + y * down - begin) / reach).clamp(0.0, 1.0) as f32)
         }
         Pattern::Everywhere => Box::new(|_, _| 1.0),
         _ => Box::new(|_, _| 0.0),
@@ -94,7 +90,11 @@ pub(super) fn rule(pattern: &Pattern, canvas: &Canvas) -> Shape {
 }
 
 /// Clouds of chance over a plane in units of their grain, 0 to 1.
-pub(super) fn clouds(scenario_seed: u64, seed: u32, octaves: u32) -> impl Fn(f64, f64) -> f32 + Sync {
+pub(super) fn clouds(
+    scenario_seed: u64,
+    seed: u32,
+    octaves: u32,
+) -> impl Fn(f64, f64) -> f32 + Sync {
     // FastNoise takes 32 bits of seed: fold the scenario's into them.
     let folded = (scenario_seed ^ (scenario_seed >> 32)) as u32;
     let mixed = folded.wrapping_mul(0x9e37_79b1) ^ seed;

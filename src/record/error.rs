@@ -15,7 +15,9 @@ pub enum RecordError {
     #[error("--scale: 1 to {LARGEST_SCALE} pixels a cell is allowed, but this is {0}")]
     Scale(u32),
     /// The number of frames is out of range.
-    #[error("{field}: 1 to {most} frames are possible in {steps} steps, but this asks for {frames}")]
+    #[error(
+        "{field}: 1 to {most} frames are possible in {steps} steps, but this asks for {frames}"
+    )]
     Frames {
         /// Where the number was given: an option or a field.
         field: &'static str,

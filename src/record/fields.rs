@@ -64,9 +64,9 @@ impl<W: Write + Seek> Archive<W> {
 /// fewer: faces lie between cells.
 fn cells(grid: Grid, less_y: usize, less_x: usize) -> impl Iterator<Item = (Layer, usize, usize)> {
     let (ny, nx) = (grid.ny - less_y, grid.nx - less_x);
-    Layer::BOTH.into_iter().flat_map(move |layer| {
-        (0..ny).flat_map(move |y| (0..nx).map(move |x| (layer, y, x)))
-    })
+    Layer::BOTH
+        .into_iter()
+        .flat_map(move |layer| (0..ny).flat_map(move |y| (0..nx).map(move |x| (layer, y, x))))
 }
 
 /// Writes what stays the same from frame to frame.
@@ -93,7 +93,11 @@ pub(super) fn write_cloth(
     let z = one_layer().map(|(y, x)| faces.z(y, x) as f32);
     archive.add("face_z", &[ny, nx], z)?;
     archive.add("capacity_free", &whole, cloth.capacity_free.iter().copied())?;
-    archive.add("capacity_bound", &whole, cloth.capacity_bound.iter().copied())?;
+    archive.add(
+        "capacity_bound",
+        &whole,
+        cloth.capacity_bound.iter().copied(),
+    )?;
     let porosity = cells(grid, 0, 0).map(|(l, y, x)| cloth.porosity(l, y, x) as f32);
     archive.add("porosity", &whole, porosity)?;
     let resist = cells(grid, 0, 0).map(|(l, y, x)| cloth.volume_ratio(l, y, x) as f32);
@@ -106,7 +110,9 @@ pub(super) fn write_cloth(
     archive.scalar("dt_h", scenario.process.step_h)?;
     archive.scalar("d0_mm2_h", scenario.dye.diffusivity.in_water())?;
     archive.scalar("phi0", scenario.dye.equilibrium)?;
-    let rate = scenario.adsorption.map_or(0.0, |adsorption| adsorption.rate);
+    let rate = scenario
+        .adsorption
+        .map_or(0.0, |adsorption| adsorption.rate);
     archive.scalar("dab_mm2_h", rate * scenario.dye.diffusivity.in_water())?;
     archive.finish()
 }

@@ -79,7 +79,14 @@ fn is_of_a_recording(name: &str) -> bool {
                 number.len() >= 5 && number.bytes().all(|byte| byte.is_ascii_digit())
             })
     };
-    ["recording.ron", "ledger.csv", "sheet.png", "cloth.npz", "video.mp4"].contains(&name)
+    [
+        "recording.ron",
+        "ledger.csv",
+        "sheet.png",
+        "cloth.npz",
+        "video.mp4",
+    ]
+    .contains(&name)
         || numbered("frame_", ".png")
         || numbered("state_", ".npz")
         || (name.starts_with('.') && name.ends_with(UNFINISHED))
@@ -91,10 +98,21 @@ mod tests {
 
     #[test]
     fn only_files_of_a_recording_are_ever_cleared() {
-        for name in ["frame_00000.png", "frame_123456.png", "state_00010.npz", "sheet.png"] {
+        for name in [
+            "frame_00000.png",
+            "frame_123456.png",
+            "state_00010.npz",
+            "sheet.png",
+        ] {
             assert!(is_of_a_recording(name), "{name}");
         }
-        for name in ["frame_1.png", "frame_best.png", "notes.txt", "cloth.ron", "my_sheet.png"] {
+        for name in [
+            "frame_1.png",
+            "frame_best.png",
+            "notes.txt",
+            "cloth.ron",
+            "my_sheet.png",
+        ] {
             assert!(!is_of_a_recording(name), "{name}");
         }
     }

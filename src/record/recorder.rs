@@ -4,13 +4,13 @@ use std::path::{Component, Path};
 
 use bevy::prelude::*;
 
+use super::RecordError;
 use super::fields::{self, State};
 use super::folder::Folder;
 use super::manifest::{self, Frame, Manifest};
 use super::plan::{Plan, Stop};
 use super::sheet::Sheet;
 use super::writer::{self, Job, Writer};
-use super::RecordError;
 use crate::adsorption::BoundDye;
 use crate::cloth::Cloth;
 use crate::diffusion::FreeDye;
@@ -115,8 +115,9 @@ impl Recorder {
         self.folder
             .write("sheet.png", |file| writer::encode(&sheet, file))?;
         let text = |name: &str, text: &str| {
-            self.folder
-                .write(name, |file| std::io::Write::write_all(file, text.as_bytes()))
+            self.folder.write(name, |file| {
+                std::io::Write::write_all(file, text.as_bytes())
+            })
         };
         text("ledger.csv", &self.ledger)?;
         text("recording.ron", &self.manifest.to_ron())?;

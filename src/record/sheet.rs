@@ -50,7 +50,10 @@ impl Sheet {
 
     /// Draws the sheet.
     pub fn draw(&self) -> Picture {
-        let (width, height) = self.tiles.first().map_or((1, 1), |(tile, _)| tile.dimensions());
+        let (width, height) = self
+            .tiles
+            .first()
+            .map_or((1, 1), |(tile, _)| tile.dimensions());
         let columns = columns(self.tiles.len(), width, height);
         let rows = self.tiles.len().div_ceil(columns) as u32;
         let letters = (width / 24).clamp(14, 30);

@@ -68,9 +68,7 @@ impl Checker {
             return Ok(());
         }
         let (least, most) = (range.start(), range.end());
-        Err(self.problem(format!(
-            "{least} to {most} is allowed, but this is {value}"
-        )))
+        Err(self.problem(format!("{least} to {most} is allowed, but this is {value}")))
     }
 
     /// Demands that `value` is more than `least` and at most `most`.
@@ -90,7 +88,11 @@ impl Checker {
     ///
     /// # Errors
     /// A [`Problem`] with the values and the range.
-    pub fn range(&self, (least, most): (f64, f64), range: RangeInclusive<f64>) -> Result<(), Problem> {
+    pub fn range(
+        &self,
+        (least, most): (f64, f64),
+        range: RangeInclusive<f64>,
+    ) -> Result<(), Problem> {
         self.item(0).within(least, range.clone())?;
         self.item(1).within(most, range)?;
         if least <= most {

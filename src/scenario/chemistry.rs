@@ -50,7 +50,8 @@ impl DyeSpec {
             Diffusivity::InWater(d0) => diffusivity.within(d0, 0.0..=1000.0)?,
             Diffusivity::MolarMass(m) => diffusivity.within(m, 1.0..=1e6)?,
         }
-        at.field("equilibrium").within(self.equilibrium, 0.001..=1.0)
+        at.field("equilibrium")
+            .within(self.equilibrium, 0.001..=1.0)
     }
 }
 

@@ -88,8 +88,7 @@ impl Experiment {
     /// # Errors
     /// A [`ScenarioError`] that names line and column.
     pub fn parse(name: &str, origin: Origin, text: String) -> Result<Self, ScenarioError> {
-        let options =
-            ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+        let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
         let source = |error| ScenarioError::Source(Box::new(error));
         let scenario: Scenario = options
             .from_str(&text)
@@ -102,8 +101,8 @@ impl Experiment {
             Origin::File(path) => path.parent().unwrap_or(Path::new("")),
             _ => Path::new(""),
         };
-        let images = Images::load(&scenario.patterns(), folder, scenario.cloth.cells())
-            .map_err(problem)?;
+        let images =
+            Images::load(&scenario.patterns(), folder, scenario.cloth.cells()).map_err(problem)?;
         let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
         Ok(Experiment {
             name: stem.unwrap_or("scenario").into(),

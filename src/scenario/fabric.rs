@@ -124,8 +124,12 @@ impl ClothSpec {
         at.field("cell_mm").within(self.cell_mm, 1e-4..=100.0)?;
         let longest = LONGEST_SIDE as f64;
         let size = at.field("size");
-        self.size.0.check(&size.item(0), self.cell_mm, 1.0, longest)?;
-        self.size.1.check(&size.item(1), self.cell_mm, 1.0, longest)?;
+        self.size
+            .0
+            .check(&size.item(0), self.cell_mm, 1.0, longest)?;
+        self.size
+            .1
+            .check(&size.item(1), self.cell_mm, 1.0, longest)?;
         self.weave.check(&at.field("weave"))?;
         self.warp.check(&at.field("warp"), self.cell_mm)?;
         self.weft().check(&at.field("weft"), self.cell_mm)?;
@@ -142,7 +146,8 @@ impl YarnSpec {
         self.width.check(&at.field("width"), cell_mm, 1.0, widest)?;
         self.gap.check(&at.field("gap"), cell_mm, 0.0, widest)?;
         at.field("porosity").above(self.porosity, 0.0, 1.0)?;
-        at.field("vary_porosity").range(self.vary_porosity, 0.01..=1.0)?;
+        at.field("vary_porosity")
+            .range(self.vary_porosity, 0.01..=1.0)?;
         at.field("twist").within(self.twist, 0.0..=1.0)?;
         at.field("vary_twist").range(self.vary_twist, 0.0..=1.0)?;
         at.field("squeeze").range(self.squeeze, 0.0..=1.0)

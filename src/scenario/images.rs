@@ -57,7 +57,9 @@ impl Images {
                 )));
             }
             if !images.rasters.contains_key(file) {
-                images.rasters.insert(file.clone(), decode(&path).map_err(named)?);
+                images
+                    .rasters
+                    .insert(file.clone(), decode(&path).map_err(named)?);
             }
         }
         Ok(images)

@@ -107,12 +107,18 @@ impl<'a> Scanner<'a> {
     }
 
     fn skip_string(&mut self) {
-        let raw = self.rest().strip_prefix('r').map_or(self.rest(), |rest| rest);
+        let raw = self
+            .rest()
+            .strip_prefix('r')
+            .map_or(self.rest(), |rest| rest);
         let hashes = raw.len() - raw.trim_start_matches('#').len();
         if self.rest().starts_with('r') {
             self.at += 1 + hashes + 1;
             let close = format!("\"{}", "#".repeat(hashes));
-            self.at += self.rest().find(&close).map_or(self.rest().len(), |i| i + close.len());
+            self.at += self
+                .rest()
+                .find(&close)
+                .map_or(self.rest().len(), |i| i + close.len());
             return;
         }
         let quote = self.peek();
@@ -272,7 +278,12 @@ mod tests {
     #[test]
     fn any_text_is_scanned_without_a_panic() {
         for end in (0..TEXT.len()).filter(|i| TEXT.is_char_boundary(*i)) {
-            for path in ["title", "cloth.size[1]", "supply[1].shape.Union[1].diameter", "x[3]"] {
+            for path in [
+                "title",
+                "cloth.size[1]",
+                "supply[1].shape.Union[1].diameter",
+                "x[3]",
+            ] {
                 locate(&TEXT[..end], path);
                 locate(&TEXT[end..], path);
             }

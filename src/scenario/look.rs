@@ -69,7 +69,11 @@ impl Colours {
     /// The three stops in HSV, lightest first.
     pub fn stops(&self) -> [(f64, f64, f64); 3] {
         match *self {
-            Colours::Indigo => [(205.0, 0.015, 0.985), (211.0, 0.62, 0.66), (226.0, 0.78, 0.30)],
+            Colours::Indigo => [
+                (205.0, 0.015, 0.985),
+                (211.0, 0.62, 0.66),
+                (226.0, 0.78, 0.30),
+            ],
             Colours::Madder => [(30.0, 0.02, 0.985), (8.0, 0.66, 0.76), (354.0, 0.82, 0.42)],
             Colours::Walnut => [(40.0, 0.03, 0.985), (29.0, 0.52, 0.62), (20.0, 0.66, 0.28)],
             Colours::Stops {
@@ -119,9 +123,11 @@ impl LookSpec {
             darkest,
         } = self.colours
         {
-            for (name, (hue, saturation, value)) in
-                [("lightest", lightest), ("middle", middle), ("darkest", darkest)]
-            {
+            for (name, (hue, saturation, value)) in [
+                ("lightest", lightest),
+                ("middle", middle),
+                ("darkest", darkest),
+            ] {
                 let at = at.field("colours").field(name);
                 at.item(0).within(hue, 0.0..=360.0)?;
                 at.item(1).within(saturation, 0.0..=1.0)?;
@@ -136,7 +142,9 @@ impl LookSpec {
             )));
         }
         at.field("fibres").within(self.yarn.fibres, 1..=1000)?;
-        at.field("roughness").within(self.yarn.roughness, 0.0..=1.0)?;
-        at.field("unevenness").within(self.yarn.unevenness, 0.0..=1.0)
+        at.field("roughness")
+            .within(self.yarn.roughness, 0.0..=1.0)?;
+        at.field("unevenness")
+            .within(self.yarn.unevenness, 0.0..=1.0)
     }
 }

@@ -82,9 +82,7 @@ impl Texture {
         picture.height = ny * scale;
         picture.rgb.resize(picture.width * picture.height * 3, 0);
         let amount = |i: usize| match self.show {
-            Show::FreeAndBound => {
-                free.concentration[i] * cloth.capacity_free[i] + bound.at(i)
-            }
+            Show::FreeAndBound => free.concentration[i] * cloth.capacity_free[i] + bound.at(i),
             Show::BoundOnly => bound.at(i),
         };
         let width = picture.width;

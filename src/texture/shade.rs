@@ -103,7 +103,11 @@ fn across(yarns: &Yarns, yarn: usize, place: f32) -> f32 {
 /// The height of a round yarn over its axis, in radii; beyond its edge it falls on.
 fn round(across: f32) -> f32 {
     let square = across * across;
-    if square < 1.0 { (1.0 - square).sqrt() } else { 1.0 - square }
+    if square < 1.0 {
+        (1.0 - square).sqrt()
+    } else {
+        1.0 - square
+    }
 }
 
 /// Where the axis of a yarn runs between the face and the back of the cloth.

@@ -123,11 +123,17 @@ impl YarnShade {
         let rough = self.look.roughness as f32;
         let theta = asinf(sine);
         let own = 53.0 * point.yarn as f32;
-        let stray = self.slub.get_noise_2d(point.along / (3.0 * self.radius), own + 500.0);
+        let stray = self
+            .slub
+            .get_noise_2d(point.along / (3.0 * self.radius), own + 500.0);
         let turns = point.along / self.turn + self.phase[point.yarn] + 0.06 * stray;
         let chi = self.look.fibres as f32 * (theta - std::f32::consts::TAU * turns);
         let even = 1.0 - cosf(0.5 * chi).abs();
-        let uneven = 0.5 - 0.5 * self.slub.get_noise_2d(0.32 * chi, own + point.along / (3.0 * self.radius));
+        let uneven = 0.5
+            - 0.5
+                * self
+                    .slub
+                    .get_noise_2d(0.32 * chi, own + point.along / (3.0 * self.radius));
         1.0 - rough * (0.45 * even + 0.55 * uneven)
     }
 
@@ -135,7 +141,9 @@ impl YarnShade {
     fn unevenness(&self, point: Point) -> f32 {
         let uneven = self.look.unevenness as f32;
         let own = 37.0 * point.yarn as f32;
-        let slub = self.slub.get_noise_2d(point.along / (16.0 * self.radius), own);
+        let slub = self
+            .slub
+            .get_noise_2d(point.along / (16.0 * self.radius), own);
         let fuzz = self.slub.get_noise_2d(
             point.along / (1.6 * self.radius),
             own + 1000.0 + 2.2 * point.across,

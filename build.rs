@@ -1,0 +1,5 @@
+//! Bundled scenarios are compiled in: a changed or new one makes the program build again.
+
+fn main() {
+    println!("cargo::rerun-if-changed=assets/scenarios");
+}

@@ -1,0 +1,319 @@
+//! Diffusion against what is known of it: the analytic solution, its symmetries, and an
+//! independent solver in double precision.
+
+mod common;
+mod reference;
+
+use common::{bound, concentration, dyed, experiment, go_on};
+use dyelapse::cloth::{Parts, Weave, Yarn, Yarns};
+use dyelapse::diffusion::{self, Faces};
+use dyelapse::pattern::Raster;
+use dyelapse::prelude::*;
+use dyelapse::scenario::Paths;
+use reference::Reference;
+
+/// The largest error against the Gaussian, relative to its peak, with cells of `cell_mm`.
+fn error_against_the_gaussian(cell_mm: f64) -> f64 {
+    // A uniform cloth: one endless yarn, no gaps, no dives; D = D₀·P in all directions.
+    let (side_mm, hours, begin_variance) = (6.4, 0.04, 0.09);
+    let step_h = 0.2 * cell_mm * cell_mm;
+    let mut app = dyeing_app(experiment(&format!(
+        "(
+            title: \"drop\",
+            cloth: (
+                size: (Mm({side_mm}), Mm({side_mm})), cell_mm: {cell_mm},
+                warp: (width: Mm({side_mm}), gap: Cells(0)), paths: (dive: 1.0),
+            ),
+            supply: [],
+            process: (duration: Hours({hours}), step_h: {step_h}),
+        )"
+    )));
+    let steps = (hours / step_h).round() as u64;
+    let d = 1.93 * 0.5;
+    let grid = app.world().resource::<Cloth>().grid;
+    let gaussian = |y: usize, x: usize, variance: f64| {
+        let distance = |i: usize| (i as f64 + 0.5) * cell_mm - side_mm / 2.0;
+        let square = distance(x).powi(2) + distance(y).powi(2);
+        begin_variance / variance * (-square / (2.0 * variance)).exp()
+    };
+    let dye = &mut app.world_mut().resource_mut::<FreeDye>().concentration;
+    for layer in Layer::BOTH {
+        for y in 0..grid.ny {
+            for x in 0..grid.nx {
+                dye[grid.index(layer, y, x)] = gaussian(y, x, begin_variance) as f32;
+            }
+        }
+    }
+    assert!(advance_to(app.world_mut(), steps, |_| true));
+    let variance = begin_variance + 2.0 * d * steps as f64 * step_h;
+    let mut worst = 0.0_f64;
+    for y in 0..grid.ny {
+        for x in 0..grid.nx {
+            let c = f64::from(concentration(&app)[grid.index(Layer::Weft, y, x)]);
+            worst = worst.max((c - gaussian(y, x, variance)).abs());
+        }
+    }
+    worst / (begin_variance / variance)
+}
+
+#[test]
+fn a_drop_on_uniform_cloth_follows_the_gaussian_and_its_error_falls_with_the_cells_square() {
+    // With Δt ∝ Δd² both errors of the scheme fall with Δd²: a quarter for every halving.
+    let errors = [0.2, 0.1, 0.05].map(error_against_the_gaussian);
+    assert!(errors[2] < 1e-3, "{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!(
+            (1.8..2.3).contains(&order),
+            "order {order}, errors {errors:?}"
+        );
+    }
+}
+
+/// A small uneven cloth whose first and last cells are yarn, so that it can be turned over.
+fn uneven(nx: usize, ny: usize, gap: usize) -> Parts {
+    let yarns = |width: usize, cells: usize, salt: usize| Yarns {
+        width,
+        gap,
+        yarns: (0..cells.div_ceil(width + gap))
+            .map(|i| Yarn {
+                porosity: 0.2 + 0.3 * ((i * 7 + salt) % 5) as f64 / 4.0,
+                twist: 0.4 + 0.6 * ((i * 3 + salt) % 4) as f64 / 3.0,
+                squeeze: 0.1 * ((i + salt) % 3) as f64,
+            })
+            .collect(),
+    };
+    Parts {
+        cell_mm: 0.05,
+        warp: yarns(3, nx, 1),
+        weft: yarns(2, ny, 2),
+        weave: Weave::Matrix(vec!["XX.X.".into(), ".X..X".into(), "X.XX.".into()]).matrix(),
+        gap_porosity: [0.35, 0.45],
+        resist: Raster::from_rule(nx, ny, |x, y| {
+            (0.9 * (0.5 + 0.5 * (0.9 * x + 1.7 * y + 0.13 * x * y).sin())) as f32
+        }),
+    }
+}
+
+const PATHS: Paths = Paths {
+    dive: 0.47,
+    between_layers: 0.3,
+    across_yarn: 0.2,
+    yarn_to_gap: 0.6,
+    gap_to_gap: 0.9,
+    along_yarn: 0.8,
+};
+
+/// Spreads `begin` on a cloth for 300 steps.
+fn spread(parts: Parts, dive: f64, begin: &[f32], equilibrium: f64) -> Vec<f32> {
+    let cloth = Cloth::assemble(parts);
+    let faces = Faces {
+        cloth: &cloth,
+        paths: &Paths { dive, ..PATHS },
+        in_water: 1.93,
+    };
+    let conductances = Conductances::new(&cloth, &faces, 0.0005, 0.0);
+    let (mut now, mut next) = (begin.to_vec(), vec![0.0; begin.len()]);
+    let mut carry = vec![0.0; begin.len()];
+    for _ in 0..300 {
+        diffusion::step(&conductances, equilibrium, &now, &mut carry, &mut next);
+        std::mem::swap(&mut now, &mut next);
+    }
+    now
+}
+
+fn rearranged(
+    field: &[f32],
+    from: Grid,
+    to: Grid,
+    at: impl Fn(Layer, usize, usize) -> (Layer, usize, usize),
+) -> Vec<f32> {
+    let mut turned = vec![0.0; field.len()];
+    for layer in Layer::BOTH {
+        for y in 0..to.ny {
+            for x in 0..to.nx {
+                let (l, v, u) = at(layer, y, x);
+                turned[to.index(layer, y, x)] = field[from.index(l, v, u)];
+            }
+        }
+    }
+    turned
+}
+
+fn turned_raster(
+    raster: &Raster,
+    nx: usize,
+    ny: usize,
+    at: impl Fn(usize, usize) -> (usize, usize),
+) -> Raster {
+    let mut turned = Raster::uniform(nx, ny, 0.0);
+    for y in 0..ny {
+        for x in 0..nx {
+            let (v, u) = at(y, x);
+            turned.values[y * nx + x] = raster.at(v, u);
+        }
+    }
+    turned
+}
+
+/// A weave redrawn over `ends` × `picks` crossings.
+fn redrawn(ends: usize, picks: usize, up: impl Fn(usize, usize) -> bool) -> Weave {
+    let drawn = |p: usize| {
+        (0..ends)
+            .map(|e| if up(e, p) { 'X' } else { '.' })
+            .collect()
+    };
+    Weave::Matrix((0..picks).map(drawn).collect())
+}
+
+fn begin(cells: usize) -> Vec<f32> {
+    (0..cells)
+        .map(|i| ((i * 37) % 101) as f32 / 100.0 * if i % 3 == 0 { 1.0 } else { 0.2 })
+        .collect()
+}
+
+#[test]
+fn a_mirrored_cloth_gives_exactly_the_mirrored_dye() {
+    // A gap belongs to the cloth cell before it, so yarns dive behind gaps and not before them: a
+    // mirrored cloth is one of the same kind only without gaps or without dives.
+    for (gap, dive, equilibrium) in [(0, 0.47, 1.0), (1, 1.0, 1.0), (0, 0.47, 0.3)] {
+        // Both edges of the cloth are yarn.
+        let grid = Grid {
+            nx: 10 * (3 + gap) - gap,
+            ny: 10 * (2 + gap) - gap,
+        };
+        let parts = uneven(grid.nx, grid.ny, gap);
+        let dye = spread(parts.clone(), dive, &begin(grid.len()), equilibrium);
+
+        let (ends, picks) = (parts.warp.yarns.len(), parts.weft.yarns.len());
+        let weave = parts.weave.clone();
+        let mut mirrored = parts;
+        mirrored.warp.yarns.reverse();
+        mirrored.weft.yarns.reverse();
+        let turned_weave = |e, p| weave.warp_up(ends - 1 - e, picks - 1 - p);
+        mirrored.weave = redrawn(ends, picks, turned_weave).matrix();
+        let over = |y: usize, x: usize| (grid.ny - 1 - y, grid.nx - 1 - x);
+        mirrored.resist = turned_raster(&mirrored.resist, grid.nx, grid.ny, over);
+        let turn = |layer, y, x| (layer, over(y, x).0, over(y, x).1);
+        let begin = rearranged(&begin(grid.len()), grid, grid, turn);
+        let turned = spread(mirrored, dive, &begin, equilibrium);
+        assert!(turned == rearranged(&dye, grid, grid, turn), "gap {gap}");
+        assert!(turned != dye, "the test cloth is its own mirror image");
+    }
+}
+
+#[test]
+fn warp_and_weft_exchanged_give_exactly_the_transposed_dye() {
+    let grid = Grid { nx: 39, ny: 29 };
+    let across = Grid { nx: 29, ny: 39 };
+    let parts = uneven(grid.nx, grid.ny, 1);
+    let dye = spread(parts.clone(), 0.47, &begin(grid.len()), 1.0);
+
+    let (ends, picks) = (parts.weft.yarns.len(), parts.warp.yarns.len());
+    let transposed = Parts {
+        warp: parts.weft.clone(),
+        weft: parts.warp.clone(),
+        weave: redrawn(ends, picks, |e, p| !parts.weave.warp_up(p, e)).matrix(),
+        gap_porosity: [parts.gap_porosity[1], parts.gap_porosity[0]],
+        resist: turned_raster(&parts.resist, across.nx, across.ny, |y, x| (x, y)),
+        ..parts
+    };
+    let turn = |layer: Layer, y: usize, x: usize| (layer.other(), x, y);
+    let begin = rearranged(&begin(grid.len()), grid, across, turn);
+    let turned = spread(transposed, 0.47, &begin, 1.0);
+    assert!(turned == rearranged(&dye, grid, across, turn));
+}
+
+#[test]
+fn the_solver_agrees_with_an_independent_one_in_double_precision() {
+    // Where an isotherm limits what binds, the model itself is touchy: a cell at its limit binds in
+    // one step and not in the next, and the last bit decides when it begins. What one step binds,
+    // 0.4 % of the free dye at paper D's rate, is then the measure of agreement, cell by cell.
+    let linear = (2e-7, 5e-8);
+    let one_step_binds = (0.004, 2e-4);
+    for (more, (most, rms)) in [
+        ("", linear),
+        (
+            "dye: (diffusivity: MolarMass(262.27), equilibrium: 0.15)",
+            linear,
+        ),
+        ("adsorption: (isotherm: Partition(k: 0.8))", one_step_binds),
+        (
+            "adsorption: (isotherm: Freundlich(k: 0.4, b: 0.35))",
+            one_step_binds,
+        ),
+        (
+            "adsorption: (isotherm: Langmuir(kl: 30.0)), dye: (equilibrium: 0.4)",
+            one_step_binds,
+        ),
+    ] {
+        let experiment = experiment(&format!(
+            "(
+                title: \"all of it\", seed: 3,
+                cloth: (
+                    size: (Cells(70), Cells(50)),
+                    weave: Twill(over: 2, under: 1),
+                    warp: (width: Cells(5), gap: Cells(1), vary_porosity: (0.5, 1.0), twist: 0.8,
+                           vary_twist: (0.3, 1.0)),
+                    weft: (width: Cells(3), gap: Cells(2), porosity: 0.4, squeeze: (0.0, 0.5)),
+                    gap_porosity: 0.45,
+                    paths: (between_layers: 0.3, across_yarn: 0.4, yarn_to_gap: 0.2),
+                ),
+                supply: [Hold(shape: Disc(diameter: Cells(20)), until: Steps(600)),
+                         Dose(shape: Disc(diameter: Cells(9), centre: (0.2, 0.3)), dose: 0.6)],
+                resist: Strength(of: Blur(of: Rays(count: 5), radius: Cells(2)), by: 0.95),
+                process: (duration: Steps(2000)),
+                {more}
+            )"
+        ));
+        let mut app = dyeing_app(experiment.clone());
+        let mut reference = Reference::of(&experiment, app.world().resource::<Cloth>());
+        go_on(&mut app, 0);
+        reference.begin(concentration(&app));
+        for step in [100, 600, 2000] {
+            go_on(&mut app, step);
+            reference.go_on(step);
+            let (worst, mean) = reference.differences(concentration(&app), bound(&app));
+            assert!(
+                worst < most && mean < rms,
+                "{more}: at most {worst:e}, {mean:e} RMS at step {step}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_step_too_long_to_be_stable_is_split_and_ends_near_the_fine_one() {
+    let with_step = |step_h: f64| {
+        dyed(
+            experiment(&format!(
+                "(
+                    title: \"coarse\",
+                    cloth: (size: (Cells(40), Cells(40)), warp: (porosity: 1.0)),
+                    supply: [Hold(shape: Disc(diameter: Cells(10)))],
+                    process: (duration: Hours(0.5), step_h: {step_h}),
+                )"
+            )),
+            (0.5 / step_h).round() as u64,
+        )
+    };
+    let (fine, coarse) = (with_step(0.0001), with_step(0.0125));
+    assert_eq!(fine.world().resource::<Conductances>().splits, 1);
+    assert!(coarse.world().resource::<Conductances>().splits > 40);
+    for (a, b) in concentration(&fine).iter().zip(concentration(&coarse)) {
+        assert!((a - b).abs() < 0.01, "{a} and {b}");
+    }
+}
+
+#[test]
+fn frames_do_not_change_the_process() {
+    let run = |looks: &[u64]| {
+        let mut app = dyeing_app(Experiment::load("one_drop").unwrap());
+        for step in looks {
+            go_on(&mut app, *step);
+        }
+        concentration(&app).to_vec()
+    };
+    let every: Vec<u64> = (0..=200).collect();
+    assert!(run(&[200]) == run(&every));
+}
