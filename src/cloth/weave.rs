@@ -85,7 +85,7 @@ impl Weave {
                     )
                 }))
             }
-            Weave::Matrix(picks) => check_matrix(picks, at),
+            Weave::Matrix(picks) => check_matrix(picks, &at.field("Matrix")),
         }
     }
 

@@ -6,7 +6,7 @@ use super::check::{Checker, Problem};
 
 /// The dye in the bath.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(rename = "Dye", deny_unknown_fields, default)]
 pub struct DyeSpec {
     /// How fast the dye spreads in water.
     pub diffusivity: Diffusivity,
@@ -57,7 +57,7 @@ impl DyeSpec {
 
 /// How free dye binds to fibre, one way (paper D §4.2b).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Adsorption", deny_unknown_fields)]
 pub struct AdsorptionSpec {
     /// D_ab as a share of D₀ (0.01 in paper D).
     #[serde(default = "default_rate")]

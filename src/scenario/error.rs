@@ -48,10 +48,12 @@ pub struct SourceError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
+    /// The line itself; of a long one, the part around the column.
+    pub text: String,
+    /// Characters of `text` before the place.
+    pub before: usize,
     /// Characters that the caret underlines.
     pub width: usize,
-    /// The line itself.
-    pub text: String,
     /// What is wrong, and what was expected.
     pub what: String,
 }
@@ -65,7 +67,7 @@ impl fmt::Display for SourceError {
         writeln!(f, "{margin} |")?;
         // Tabs become one space each, so that the caret stands where the column says.
         writeln!(f, "{number} | {}", self.text.replace('\t', " "))?;
-        let before = " ".repeat(self.column.saturating_sub(1));
+        let before = " ".repeat(self.before);
         write!(f, "{margin} | {before}{}", "^".repeat(self.width.max(1)))
     }
 }
@@ -79,12 +81,15 @@ impl SourceError {
         let text = source[line_begin..].lines().next().unwrap_or("");
         let column = source[line_begin..begin].chars().count() + 1;
         let marked = source[begin..end].lines().next().unwrap_or("").trim_end();
+        let width = marked.chars().count().clamp(1, 60);
+        let (text, before) = excerpt(text, column, width);
         SourceError {
             name: name.into(),
             line: source[..begin].matches('\n').count() + 1,
             column,
-            width: marked.chars().count().clamp(1, 60),
-            text: shortened(text, column + 60),
+            text,
+            before,
+            width,
             what,
         }
     }
@@ -112,13 +117,27 @@ fn floor_boundary(source: &str, at: usize) -> usize {
     at
 }
 
-/// A line cut to a readable length.
-fn shortened(line: &str, most: usize) -> String {
-    let most = most.max(120);
-    if line.chars().count() <= most {
-        return line.into();
+/// A line, or of a long one the part around a column, and how much of it comes before the column.
+fn excerpt(line: &str, column: usize, width: usize) -> (String, usize) {
+    const ROOM: usize = 110;
+    let characters: Vec<char> = line.chars().collect();
+    let before = column - 1;
+    if characters.len() <= ROOM || before + width <= ROOM {
+        let cut = if characters.len() > ROOM { "…" } else { "" };
+        return (
+            characters
+                .iter()
+                .take(ROOM)
+                .chain(&cut.chars().collect::<Vec<_>>())
+                .collect(),
+            before,
+        );
     }
-    line.chars().take(most).chain("…".chars()).collect()
+    let from = before.min(characters.len()).saturating_sub(ROOM / 2);
+    let until = characters.len().min(from + ROOM);
+    let end = if until < characters.len() { "…" } else { "" };
+    let part: String = characters[from..until].iter().collect();
+    (format!("…{part}{end}"), before - from + 1)
 }
 
 /// Byte offset of a line and column that count from 1.
@@ -154,10 +173,13 @@ fn token_near(source: &str, begin: usize, end: usize, code: &ron::Error) -> (usi
             return (at, at + word.len());
         }
     }
-    let points_at_value = matches!(
-        code,
-        E::InvalidValueForType { .. } | E::Message(_) | E::IntegerOutOfBounds
-    );
+    if matches!(code, E::IntegerOutOfBounds) {
+        // The parser stands behind the number.
+        let text = &source[..floor_boundary(source, end)];
+        let number = text.trim_end_matches(|c: char| c.is_alphanumeric() || "+-_.".contains(c));
+        return (number.len(), text.len());
+    }
+    let points_at_value = matches!(code, E::InvalidValueForType { .. } | E::Message(_));
     if points_at_value && begin < end {
         let text = &source[floor_boundary(source, begin)..floor_boundary(source, end)];
         let blank = text.len() - text.trim_start().len();
@@ -203,6 +225,14 @@ fn describe(code: &ron::Error) -> String {
             format!("expected {expected}, but found {found}")
         }
         E::ExceededRecursionLimit => "this is nested too deeply".into(),
+        E::IntegerOutOfBounds => "this whole number is too small or too large here".into(),
+        E::ExpectedInteger => "expected a whole number".into(),
+        E::ExpectedFloat => "expected a number".into(),
+        E::ExpectedString => "expected text in quotes".into(),
+        E::ExpectedIdentifier => "expected a name: of a field, a pattern, a weave …".into(),
+        E::ExpectedNamedStructLike(name) => {
+            format!("expected `(`, then the fields of `{name}`, then `)`")
+        }
         E::Eof => "the text ends too early: a bracket or quote is not closed".into(),
         E::TrailingCharacters => "expected the end of the scenario here".into(),
         other => {

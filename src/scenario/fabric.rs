@@ -11,7 +11,7 @@ pub const LONGEST_SIDE: usize = 1 << 20;
 
 /// The cloth (paper D §4.1).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Cloth", deny_unknown_fields)]
 pub struct ClothSpec {
     /// Across and down.
     pub size: (Length, Length),
@@ -37,7 +37,7 @@ pub struct ClothSpec {
 
 /// The yarns of one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(rename = "Yarn", deny_unknown_fields, default)]
 pub struct YarnSpec {
     /// Width of a yarn.
     pub width: Length,

@@ -9,7 +9,7 @@ pub const LARGEST_SCALE: u32 = 64;
 
 /// How the cloth is drawn (paper D §4.3).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(rename = "Look", deny_unknown_fields, default)]
 pub struct LookSpec {
     /// Which dye is shown.
     pub show: Show,

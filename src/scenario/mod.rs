@@ -72,6 +72,7 @@ impl Scenario {
         self.cloth.check(&at.field("cloth"))?;
         self.process.check(&at.field("process"))?;
         self.dye.check(&at.field("dye"))?;
+        self.check_step(&at.field("process").field("step_h"))?;
         let (cell_mm, step_h) = (self.cloth.cell_mm, self.process.step_h);
         for (i, supply) in self.supply.iter().enumerate() {
             supply.check(&at.field("supply").item(i), cell_mm, step_h)?;
@@ -82,6 +83,23 @@ impl Scenario {
         }
         self.look.check(&at.field("look"))?;
         self.record.check(&at.field("record"), &self.process)
+    }
+
+    /// Refuses a step so long that it would have to be split without end: see
+    /// [`Conductances::splits`](crate::diffusion::Conductances::splits).
+    fn check_step(&self, at: &Checker) -> Result<(), Problem> {
+        const MOST_SPLITS: f64 = 10_000.0;
+        let cell = self.cloth.cell_mm * self.cloth.cell_mm;
+        // A cell has five neighbours, and no path is faster than clear water.
+        let fastest = 5.0 * self.dye.diffusivity.in_water() / cell;
+        if fastest * self.process.step_h <= MOST_SPLITS {
+            return Ok(());
+        }
+        Err(at.problem(format!(
+            "dye this fast in cells this small allows steps of at most {} h, but this is {} h",
+            units::rounded(MOST_SPLITS / fastest, 3),
+            self.process.step_h
+        )))
     }
 
     /// Every pattern that the scenario names, each with its place.

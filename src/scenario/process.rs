@@ -11,7 +11,7 @@ pub const MOST_FRAMES: u32 = 1_000_000;
 
 /// One way in which dye is given to the cloth (paper D §2; model section 3).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Supply", deny_unknown_fields)]
 pub enum SupplySpec {
     /// Given once: the liquid there gets at least this much dye.
     Dose {
@@ -83,7 +83,7 @@ impl SupplySpec {
 
 /// How long dyeing lasts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Process", deny_unknown_fields)]
 pub struct ProcessSpec {
     /// From the first dye to the end.
     pub duration: Time,
@@ -111,7 +111,7 @@ impl ProcessSpec {
 
 /// What a recording keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(rename = "Record", deny_unknown_fields, default)]
 pub struct RecordSpec {
     /// Frames of the time-lapse, evenly spread from the first moment to the last.
     pub frames: u32,
@@ -131,6 +131,14 @@ impl Default for RecordSpec {
 impl RecordSpec {
     pub(super) fn check(&self, at: &Checker, process: &ProcessSpec) -> Result<(), Problem> {
         at.field("frames").within(self.frames, 1..=MOST_FRAMES)?;
+        let moments = process.steps().saturating_add(1);
+        if u64::from(self.frames) > moments {
+            return Err(at.field("frames").problem(format!(
+                "{} steps have {moments} moments, but this asks for {} frames",
+                process.steps(),
+                self.frames
+            )));
+        }
         let at = at.field("sheet");
         if self.sheet.len() > 100 {
             return Err(at.problem(format!(

@@ -46,15 +46,16 @@ impl Length {
         };
         Err(at.problem(format!(
             "{} to {} {unit} is allowed, but this is {given} {unit}",
-            rounded(least * per_cell),
-            rounded(most * per_cell)
+            rounded(least * per_cell, 9),
+            rounded(most * per_cell, 9)
         )))
     }
 }
 
-/// A number of at most nine significant digits, so that 0.05 · 3 prints as 0.15.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.8e}").parse().unwrap_or(x)
+/// A number rounded to a few significant digits, so that 0.05 · 3 prints as 0.15.
+pub(crate) fn rounded(x: f64, digits: usize) -> f64 {
+    let places = digits.saturating_sub(1);
+    format!("{x:.places$e}").parse().unwrap_or(x)
 }
 
 /// A moment or a span of process time.
