@@ -73,50 +73,48 @@ impl Isotherm {
 
 /// What one cell holds for adsorption.
 #[derive(Debug, Clone, Copy)]
-pub struct Pore {
-    /// c, the concentration of its liquid.
-    pub c: f32,
-    /// What rounding has left over of c.
-    pub carry: f32,
+struct Pore {
+    /// c, the concentration of its liquid, and what rounding has left over of it.
+    c: f32,
+    carry: f32,
     /// A, its bound dye.
-    pub bound: f32,
-    /// V_u, its free capacity.
-    pub v_u: f32,
-    /// V_d, its bound capacity.
-    pub v_d: f32,
+    bound: f32,
+    /// V_u and V_d, its capacities.
+    v_u: f32,
+    v_d: f32,
     /// 1/V_u, or 0.
-    pub per_v_u: f32,
+    per_v_u: f32,
 }
 
 /// The most of its free dye that a cell may lose in one split step: above
 /// [`MOST_EXCHANGE`](crate::diffusion::MOST_EXCHANGE), below 1 by more than rounding.
 const NEARLY_ALL: f32 = 1.0 - 1.0 / 131_072.0;
 
-/// One step of one cell.
+/// One step of one cell: its concentration, carry and bound dye afterwards.
 ///
 /// `share` is D_ab·Δt/Δd² and less than 1. Neither limit is ever passed: a cell that already has
 /// more than the isotherm allows by now keeps it and binds no more.
 #[inline(always)]
-pub fn bind(isotherm: Isotherm, share: f32, pore: Pore) -> Pore {
+fn bind(limit: impl Fn(f32, f32) -> f32, share: f32, pore: Pore) -> (f32, f32, f32) {
     let phi = pore.c * pore.v_u;
-    let limit = isotherm.limit(phi, pore.v_d).min(pore.v_d);
+    let limit = limit(phi, pore.v_d).min(pore.v_d);
     let bound = (pore.bound + share * phi).min(limit.max(pore.bound));
     // Exactly what the bound dye grew by in float32, so that no rounding makes or loses dye. Where
     // rounding up would take nearly all that is there, or more, it waits for a later step.
     let gained = bound - pore.bound;
-    if gained > phi * NEARLY_ALL {
-        return pore;
-    }
+    let waits = gained > phi * NEARLY_ALL;
     let (c, carry) = add(pore.c, pore.carry, -gained * pore.per_v_u);
-    Pore {
-        c,
-        carry,
-        bound,
-        ..pore
+    if waits {
+        (pore.c, pore.carry, pore.bound)
+    } else {
+        (c, carry, bound)
     }
 }
 
-/// One (split) step of every cell.
+/// Cells that one task binds.
+const CELLS_A_TASK: usize = 1 << 14;
+
+/// One (split) step of every cell. `share` is D_ab·Δt/Δd².
 pub fn step(
     isotherm: Isotherm,
     share: f32,
@@ -125,28 +123,6 @@ pub fn step(
     free: &mut FreeDye,
     bound: &mut BoundDye,
 ) {
-    // Chosen once, not for every cell: each closure is compiled for its own isotherm.
-    match isotherm {
-        Isotherm::Partition { k } => each(cloth, per_capacity, free, bound, |pore| {
-            bind(Isotherm::Partition { k }, share, pore)
-        }),
-        Isotherm::Freundlich { k, b } => each(cloth, per_capacity, free, bound, |pore| {
-            bind(Isotherm::Freundlich { k, b }, share, pore)
-        }),
-        Isotherm::Langmuir { kl } => each(cloth, per_capacity, free, bound, |pore| {
-            bind(Isotherm::Langmuir { kl }, share, pore)
-        }),
-    }
-}
-
-fn each(
-    cloth: &Cloth,
-    per_capacity: &[f32],
-    free: &mut FreeDye,
-    bound: &mut BoundDye,
-    bind: impl Fn(Pore) -> Pore + Sync,
-) {
-    const CELLS_A_TASK: usize = 1 << 14;
     let tasks = free
         .concentration
         .par_chunks_mut(CELLS_A_TASK)
@@ -156,22 +132,72 @@ fn each(
         .zip(cloth.capacity_bound.par_chunks(CELLS_A_TASK))
         .zip(per_capacity.par_chunks(CELLS_A_TASK));
     tasks.for_each(|(((((c, carry), bound), v_u), v_d), per_v_u)| {
-        for i in 0..c.len() {
-            // Clean water binds nothing; most of a cloth is clean most of the time.
-            if c[i] == 0.0 {
-                continue;
-            }
-            let pore = bind(Pore {
+        let pores = Pores {
+            c,
+            carry,
+            bound,
+            v_u,
+            v_d,
+            per_v_u,
+        };
+        bind_all(isotherm, share, pores);
+    });
+}
+
+/// The fields of neighbouring cells, all of one length.
+struct Pores<'a> {
+    c: &'a mut [f32],
+    carry: &'a mut [f32],
+    bound: &'a mut [f32],
+    v_u: &'a [f32],
+    v_d: &'a [f32],
+    per_v_u: &'a [f32],
+}
+
+/// Binds dye in neighbouring cells. Each isotherm gets a loop of its own, in whole vectors.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn bind_all(isotherm: Isotherm, share: f32, pores: Pores) {
+    match isotherm {
+        Isotherm::Partition { k } => {
+            pores.each(|phi, v_d| Isotherm::Partition { k }.limit(phi, v_d), share);
+        }
+        Isotherm::Freundlich { k, b } if b == 0.5 => {
+            pores.each(
+                |phi, v_d| Isotherm::Freundlich { k, b: 0.5 }.limit(phi, v_d),
+                share,
+            );
+        }
+        Isotherm::Freundlich { k, b } => {
+            pores.each(
+                |phi, v_d| Isotherm::Freundlich { k, b }.limit(phi, v_d),
+                share,
+            );
+        }
+        Isotherm::Langmuir { kl } => {
+            pores.each(|phi, v_d| Isotherm::Langmuir { kl }.limit(phi, v_d), share);
+        }
+    }
+}
+
+impl Pores<'_> {
+    #[inline(always)]
+    fn each(self, limit: impl Fn(f32, f32) -> f32, share: f32) {
+        // Slices of one known length let the compiler drop every bounds check.
+        let n = self.c.len();
+        let (c, carry, bound) = (&mut self.c[..n], &mut self.carry[..n], &mut self.bound[..n]);
+        let (v_u, v_d, per_v_u) = (&self.v_u[..n], &self.v_d[..n], &self.per_v_u[..n]);
+        for i in 0..n {
+            let pore = Pore {
                 c: c[i],
                 carry: carry[i],
                 bound: bound[i],
                 v_u: v_u[i],
                 v_d: v_d[i],
                 per_v_u: per_v_u[i],
-            });
-            (c[i], carry[i], bound[i]) = (pore.c, pore.carry, pore.bound);
+            };
+            (c[i], carry[i], bound[i]) = bind(&limit, share, pore);
         }
-    });
+    }
 }
 
 fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {

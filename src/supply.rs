@@ -48,22 +48,30 @@ enum Course {
 }
 
 impl Course {
-    /// Whether a hold is in force at a step: from its beginning up to, not at, its end.
-    fn holds(self, step: u64) -> bool {
+    /// Whether a hold tops up at the moment of a step: from its beginning to its end, both included.
+    fn tops_up(self, step: u64) -> bool {
         match self {
             Course::Once { .. } => false,
-            Course::Held { from, until } => from <= step && until.is_none_or(|until| step < until),
+            Course::Held { from, until } => from <= step && until.is_none_or(|until| step <= until),
         }
+    }
+
+    /// Whether a hold goes on after the moment of a step.
+    fn goes_on(self, step: u64) -> bool {
+        let Course::Held { until, .. } = self else {
+            return false;
+        };
+        self.tops_up(step) && until != Some(step)
     }
 }
 
 impl Supplies {
-    /// The concentration kept in each cell at a step; NaN where none is.
+    /// The concentration kept in each cell from a step on; NaN where none is.
     ///
     /// Where two holds overlap, the later one of the scenario counts.
     pub fn held(&self, step: u64, cells: usize) -> Vec<f32> {
         let mut held = vec![f32::NAN; cells];
-        for supply in self.list.iter().filter(|s| s.course.holds(step)) {
+        for supply in self.list.iter().filter(|s| s.course.goes_on(step)) {
             for (i, concentration) in &supply.cells {
                 held[*i as usize] = *concentration;
             }
@@ -86,7 +94,7 @@ pub fn bring(
                 *done = true;
                 true
             }
-            course if course.holds(step) => false,
+            course if course.tops_up(step) => false,
             _ => continue,
         };
         for (i, concentration) in &supply.cells {

@@ -181,7 +181,7 @@ fn a_hold_keeps_its_dose_to_its_end_and_takes_back_what_is_too_much() {
         .resource::<Cloth>()
         .grid
         .index(Layer::Warp, 15, 15);
-    for step in [0, 1, 50, 99] {
+    for step in [0, 1, 50, 99, 100] {
         go_on(&mut app, step);
         assert_eq!(concentration(&app)[middle], 0.25);
     }

@@ -16,11 +16,9 @@ pub enum RecordError {
     Scale(u32),
     /// The number of frames is out of range.
     #[error(
-        "{field}: 1 to {most} frames are possible in {steps} steps, but this asks for {frames}"
+        "--frames: 1 to {most} frames are possible in {steps} steps, but this asks for {frames}"
     )]
     Frames {
-        /// Where the number was given: an option or a field.
-        field: &'static str,
         /// The number asked for.
         frames: u32,
         /// The most that are possible.

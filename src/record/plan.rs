@@ -38,36 +38,24 @@ impl Plan {
         frames: Option<u32>,
         steps: Option<u64>,
     ) -> Result<Self, RecordError> {
-        let own_steps = scenario.process.steps();
-        let total = steps.unwrap_or(own_steps);
+        let total = steps.unwrap_or_else(|| scenario.process.steps());
         if total > MOST_STEPS {
             return Err(RecordError::Steps {
                 steps: total,
                 most: MOST_STEPS,
             });
         }
-        // Two frames of the same moment would be a still in the film.
-        let most = total.saturating_add(1).min(u64::from(MOST_FRAMES));
-        let own_frames = scenario.record.frames;
-        let count = match (frames, steps) {
-            (Some(frames), _) => frames,
-            // A process that was cut short need not have been planned for.
-            (None, Some(_)) => u64::from(own_frames).min(most) as u32,
-            (None, None) => own_frames,
-        };
+        let moments = total.saturating_add(1);
+        let count = frames.unwrap_or_else(|| scenario.record.frames(moments));
+        let most = moments.min(u64::from(MOST_FRAMES));
+        // Two frames of one moment would be a still in the film.
         if count == 0 || u64::from(count) > most {
             return Err(RecordError::Frames {
-                field: if frames.is_some() {
-                    "--frames"
-                } else {
-                    "record.frames"
-                },
                 frames: count,
                 most,
                 steps: total,
             });
         }
-
         let mut stops = BTreeMap::new();
         for frame in 0..count {
             let step = spread(u64::from(frame), u64::from(count), total);

@@ -6,6 +6,8 @@ use super::check::{Checker, Problem};
 use super::units::Time;
 use crate::pattern::Pattern;
 
+/// Frames of a recording whose scenario does not say: a second of film.
+const DEFAULT_FRAMES: u32 = 25;
 /// The most frames one recording may have.
 pub const MOST_FRAMES: u32 = 1_000_000;
 
@@ -110,34 +112,34 @@ impl ProcessSpec {
 }
 
 /// What a recording keeps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename = "Record", deny_unknown_fields, default)]
 pub struct RecordSpec {
-    /// Frames of the time-lapse, evenly spread from the first moment to the last.
-    pub frames: u32,
+    /// Frames of the time-lapse, evenly spread from the first moment to the last. Left out: 25.
+    pub frames: Option<u32>,
     /// The moments on the contact sheet. Left out: eight of the frames.
     pub sheet: Vec<Time>,
 }
 
-impl Default for RecordSpec {
-    fn default() -> Self {
-        RecordSpec {
-            frames: 25,
-            sheet: Vec::new(),
-        }
-    }
-}
-
 impl RecordSpec {
+    /// Frames of a process of `moments` moments, where no one asks for another number.
+    pub fn frames(&self, moments: u64) -> u32 {
+        let frames = self.frames.unwrap_or(DEFAULT_FRAMES);
+        u64::from(frames).min(moments) as u32
+    }
+
     pub(super) fn check(&self, at: &Checker, process: &ProcessSpec) -> Result<(), Problem> {
-        at.field("frames").within(self.frames, 1..=MOST_FRAMES)?;
         let moments = process.steps().saturating_add(1);
-        if u64::from(self.frames) > moments {
-            return Err(at.field("frames").problem(format!(
-                "{} steps have {moments} moments, but this asks for {} frames",
-                process.steps(),
-                self.frames
-            )));
+        if let Some(frames) = self.frames {
+            let at = at.field("frames");
+            at.within(frames, 1..=MOST_FRAMES)?;
+            // Two frames of one moment would be a still in the film.
+            if u64::from(frames) > moments {
+                return Err(at.problem(format!(
+                    "{} steps have {moments} moments, but this asks for {frames} frames",
+                    process.steps(),
+                )));
+            }
         }
         let at = at.field("sheet");
         if self.sheet.len() > 100 {

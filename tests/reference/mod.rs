@@ -111,7 +111,7 @@ impl Reference {
     }
 
     fn keep_held(&mut self) {
-        if self.step >= self.until {
+        if self.step > self.until {
             return;
         }
         for (i, held) in self.held.iter().enumerate() {

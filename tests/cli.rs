@@ -1,0 +1,319 @@
+//! The command line, end to end: what is written, what is refused, and that bytes repeat.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use dyelapse::record::Manifest;
+use tempfile::TempDir;
+
+fn dyelapse(folder: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_dyelapse"));
+    command.current_dir(folder.path());
+    command
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// Every file below a folder and its bytes.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .map(|path| {
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            (name, fs::read(&path).unwrap())
+        })
+        .collect()
+}
+
+fn manifest(folder: &Path) -> Manifest {
+    ron::from_str(&fs::read_to_string(folder.join("recording.ron")).unwrap()).unwrap()
+}
+
+fn said(command: &mut Command) -> (i32, String) {
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code().unwrap_or(-1), text)
+}
+
+#[test]
+fn a_recording_has_every_frame_and_says_what_each_shows() {
+    let here = folder();
+    dyelapse(&here)
+        .args([
+            "record", "one_drop", "--steps", "100", "--frames", "5", "--scale", "2",
+        ])
+        .assert()
+        .success();
+    let out = here.path().join("recordings/one_drop");
+    let files = contents(&out);
+    for name in ["sheet.png", "ledger.csv", "recording.ron", "one_drop.ron"] {
+        assert!(files.contains_key(name), "{name} is missing");
+    }
+    let manifest = manifest(&out);
+    assert!(manifest.complete);
+    assert_eq!(manifest.pixels, (240, 160));
+    assert_eq!(
+        manifest
+            .frames
+            .iter()
+            .map(|frame| frame.step)
+            .collect::<Vec<_>>(),
+        [0, 25, 50, 75, 100]
+    );
+    for frame in &manifest.frames {
+        let picture = image::open(out.join(&frame.file)).unwrap();
+        assert_eq!((picture.width(), picture.height()), (240, 160));
+        assert!((frame.hours - frame.step as f64 * 0.0005).abs() < 1e-12);
+    }
+    let ledger = String::from_utf8(files["ledger.csv"].clone()).unwrap();
+    let mut lines = ledger.lines();
+    let head = "step,time_h,supplied,free,bound,removed,imbalance";
+    assert_eq!(lines.next(), Some(head));
+    assert_eq!(lines.count(), 5);
+    assert!(!files.keys().any(|name| name.ends_with(".part")));
+}
+
+#[test]
+fn the_scenario_in_a_recording_makes_the_same_recording_again() {
+    let here = folder();
+    let few = ["--steps", "30", "--frames", "2"];
+    dyelapse(&here)
+        .args(["record", "one_drop", "--out", "a"])
+        .args(few)
+        .assert()
+        .success();
+    dyelapse(&here)
+        .args(["record", "a/one_drop.ron", "--out", "b"])
+        .args(few)
+        .assert()
+        .success();
+    assert!(contents(&here.path().join("a")) == contents(&here.path().join("b")));
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bytes_on_any_number_of_threads() {
+    let here = folder();
+    let mut scenario = fs::read_to_string("assets/scenarios/fig9c.ron").unwrap();
+    scenario = scenario.replace(
+        "size: (Cells(200), Cells(200))",
+        "size: (Cells(300), Cells(190))",
+    );
+    fs::write(here.path().join("cloth.ron"), scenario).unwrap();
+    let mut recordings = Vec::new();
+    for (run, threads) in ["1", "2", "5", "5"].iter().enumerate() {
+        let out = format!("run{run}");
+        dyelapse(&here)
+            .env("RAYON_NUM_THREADS", threads)
+            .args(["record", "cloth.ron", "--out", &out, "--fields"])
+            .args(["--steps", "200", "--frames", "3"])
+            .assert()
+            .success();
+        recordings.push(contents(&here.path().join(out)));
+    }
+    for other in &recordings[1..] {
+        assert!(recordings[0] == *other);
+    }
+}
+
+#[test]
+fn another_seed_gives_another_cloth() {
+    let here = folder();
+    let text = fs::read_to_string("assets/scenarios/fig8f.ron").unwrap();
+    for seed in ["8", "9"] {
+        let text = text.replace("seed: 8", &format!("seed: {seed}"));
+        fs::write(here.path().join(format!("{seed}.ron")), text).unwrap();
+        dyelapse(&here)
+            .args([
+                "record",
+                &format!("{seed}.ron"),
+                "--out",
+                seed,
+                "--steps",
+                "20",
+                "--frames",
+                "1",
+            ])
+            .assert()
+            .success();
+    }
+    let frame = |seed: &str| fs::read(here.path().join(seed).join("frame_00000.png")).unwrap();
+    assert!(frame("8") != frame("9"));
+}
+
+#[test]
+fn a_folder_with_anything_in_it_is_refused_and_force_clears_only_recordings() {
+    let here = folder();
+    let out = here.path().join("out");
+    fs::create_dir(&out).unwrap();
+    for (name, text) in [
+        ("notes.txt", "mine"),
+        ("frame_00099.png", "old"),
+        ("sheet.png", "old"),
+    ] {
+        fs::write(out.join(name), text).unwrap();
+    }
+    let before = contents(&out);
+    let arguments = [
+        "record", "one_drop", "--steps", "2", "--frames", "1", "--out", "out",
+    ];
+    let (code, text) = said(dyelapse(&here).args(arguments));
+    assert_eq!(code, 2);
+    assert!(
+        text.contains("not empty") && text.contains("--force"),
+        "{text}"
+    );
+    assert!(contents(&out) == before);
+
+    dyelapse(&here)
+        .args(arguments)
+        .arg("--force")
+        .assert()
+        .success();
+    let after = contents(&out);
+    assert_eq!(after["notes.txt"], b"mine");
+    assert!(!after.contains_key("frame_00099.png"));
+    assert!(after["sheet.png"] != b"old");
+}
+
+#[test]
+fn bad_input_is_told_on_one_place_ends_with_2_and_writes_nothing() {
+    let here = folder();
+    fs::write(here.path().join("bad.ron"), "(titel: \"x\")").unwrap();
+    fs::write(here.path().join("a_file"), "").unwrap();
+    fs::write(
+        here.path().join("huge.ron"),
+        "(title: \"huge\", cloth: (size: (Cells(1000000), Cells(1000000))), supply: [],
+          process: (duration: Steps(1)))",
+    )
+    .unwrap();
+    let cases: [(&[&str], &str); 12] = [
+        (
+            &["record", "bad.ron"],
+            "bad.ron:1:2: there is no field `titel`",
+        ),
+        (&["record", "seikahia"], "did you mean `seikaiha`?"),
+        (&["record", "no/such.ron"], "no/such.ron"),
+        (&["record", "."], "folder"),
+        (&["record", "huge.ron"], "GB of memory"),
+        (&["record", "one_drop", "--scale", "0"], "--scale: 1 to 64"),
+        (&["record", "one_drop", "--scale", "65"], "--scale: 1 to 64"),
+        (
+            &["record", "one_drop", "--frames", "0"],
+            "--frames: 1 to 2001",
+        ),
+        (
+            &["record", "one_drop", "--frames", "12", "--steps", "10"],
+            "--frames: 1 to 11",
+        ),
+        (
+            &["record", "one_drop", "--steps", "18446744073709551615"],
+            "--steps: 0 to",
+        ),
+        (&["record", "one_drop", "--out", "a_file"], "is a file"),
+        (&["record", "one_drop", "--steps", "many"], "invalid value"),
+    ];
+    let before = fs::read_dir(here.path()).unwrap().count();
+    for (arguments, expected) in cases {
+        let (code, text) = said(dyelapse(&here).args(arguments));
+        assert_eq!(code, 2, "{arguments:?}: {text}");
+        assert!(text.contains(expected), "{arguments:?}: {text}");
+        assert!(!text.contains("panicked"), "{text}");
+    }
+    assert_eq!(fs::read_dir(here.path()).unwrap().count(), before);
+}
+
+#[test]
+fn check_tells_right_from_wrong_and_goes_through_all() {
+    let here = folder();
+    fs::write(here.path().join("bad.ron"), "(titel: \"x\")").unwrap();
+    let output = dyelapse(&here)
+        .args(["check", "bad.ron", "seikaiha"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let right = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        right.contains("seikaiha: right; 800×600×2 cells, 400000 steps (200 h)"),
+        "{right}"
+    );
+    dyelapse(&here)
+        .args(["check", "one_drop"])
+        .assert()
+        .success();
+}
+
+#[test]
+fn list_help_version_and_completions_teach() {
+    let here = folder();
+    let print = |arguments: &[&str]| {
+        let output = dyelapse(&here).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let list = print(&["list"]);
+    for name in ["seikaiha", "one_drop", "fig8a", "fig9c", "fig10b"] {
+        assert!(list.lines().any(|line| line.starts_with(name)), "{name}");
+    }
+    assert!(print(&["--help"]).contains("dyelapse record one_drop"));
+    assert!(print(&["record", "--help"]).contains("Ctrl-C"));
+    assert!(print(&["--version"]).contains(env!("CARGO_PKG_VERSION")));
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(print(&["completions", shell]).contains("dyelapse"));
+    }
+}
+
+#[test]
+fn video_without_ffmpeg_is_refused_before_anything_is_written() {
+    let here = folder();
+    let (code, text) = said(dyelapse(&here).env("PATH", here.path()).args([
+        "record", "one_drop", "--steps", "2", "--frames", "1", "--video",
+    ]));
+    assert_eq!(code, 2, "{text}");
+    assert!(text.contains("ffmpeg"), "{text}");
+    assert_eq!(fs::read_dir(here.path()).unwrap().count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_a_valid_shorter_recording() {
+    let here = folder();
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_dyelapse"))
+        .current_dir(here.path())
+        .args([
+            "record", "seikaiha", "--out", "out", "--frames", "40001", "--quiet",
+        ])
+        .spawn()
+        .unwrap();
+    let out = here.path().join("out");
+    // It takes minutes in all: wait until it is well on its way.
+    while !out.join("frame_00002.png").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let killed = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+
+    let manifest = manifest(&out);
+    assert!(!manifest.complete);
+    assert!(manifest.frames.len() >= 3);
+    for frame in &manifest.frames {
+        image::open(out.join(&frame.file)).unwrap();
+    }
+    let files = contents(&out);
+    let frames = files
+        .keys()
+        .filter(|name| name.starts_with("frame_"))
+        .count();
+    assert_eq!(frames, manifest.frames.len());
+    assert!(files.contains_key("sheet.png") && files.contains_key("ledger.csv"));
+    assert!(!files.keys().any(|name| name.ends_with(".part")));
+}
