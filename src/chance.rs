@@ -1,7 +1,7 @@
 //! Chance that is the same on every machine and in every release: ChaCha, one stream a purpose.
 
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// The seed of everything random in a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

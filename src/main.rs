@@ -1,4 +1,4 @@
-//! The program: `dyelapse record`, `check`, `list`.
+//! The program: reads what was typed and does it.
 
 mod cli;
 mod commands;

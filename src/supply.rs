@@ -103,7 +103,7 @@ pub fn bring(
             if pours && dye.concentration[i] >= *concentration {
                 continue;
             }
-            let grown = dye.set(i, *concentration);
+            let grown = dye.bring(i, *concentration);
             ledger.book(grown * f64::from(cloth.capacity_free[i]));
         }
     }

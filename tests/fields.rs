@@ -1,5 +1,6 @@
 //! The NumPy archives: every array that is promised, in the promised shape, and enough to compute
 //! the next state from.
+#![allow(clippy::disallowed_methods)] // A test may use the platform's own functions.
 
 use std::fs::File;
 use std::io::Read;

@@ -55,8 +55,8 @@ impl FreeDye {
             .sum()
     }
 
-    /// Sets the concentration of a cell; returns by how much it grew.
-    pub fn set(&mut self, i: usize, concentration: f32) -> f64 {
+    /// Brings a cell to a concentration; returns by how much it grew, to be booked in the ledger.
+    pub fn bring(&mut self, i: usize, concentration: f32) -> f64 {
         let before = f64::from(self.concentration[i]) + f64::from(self.carry[i]);
         self.concentration[i] = concentration;
         self.carry[i] = 0.0;

@@ -155,7 +155,7 @@ impl<'a> Canvas<'a> {
             }
             simple => {
                 let shape = shapes::rule(simple, self);
-                Raster::from_rule(nx, ny, |x, y| shape(x, y))
+                Raster::from_rule(nx, ny, shape)
             }
         }
     }

@@ -97,7 +97,7 @@ fn columns(tiles: usize, width: u32, height: u32) -> usize {
         let rows = tiles.div_ceil(columns);
         let empty = (rows * columns - tiles) as f64;
         let shape = (columns as f64 * f64::from(width)) / (rows as f64 * f64::from(height));
-        (shape / 1.7).ln().abs() + 0.5 * empty
+        libm::log(shape / 1.7).abs() + 0.5 * empty
     };
     (1..=tiles.max(1))
         .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))

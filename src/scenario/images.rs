@@ -1,7 +1,7 @@
 //! The pictures that a scenario's patterns name, loaded and checked before anything runs.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use image::{ImageReader, Limits};
 
@@ -79,13 +79,13 @@ fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>,
     Ok(reader)
 }
 
-fn dimensions(path: &PathBuf) -> Result<(usize, usize), String> {
+fn dimensions(path: &Path) -> Result<(usize, usize), String> {
     let (width, height) = reader(path)?.into_dimensions().map_err(not_a_picture)?;
     Ok((width as usize, height as usize))
 }
 
 /// Brightness from 0 to 1; what is transparent counts as black.
-fn decode(path: &PathBuf) -> Result<Raster, String> {
+fn decode(path: &Path) -> Result<Raster, String> {
     let image = reader(path)?.decode().map_err(not_a_picture)?;
     let image = image.to_luma_alpha32f();
     Ok(Raster {
