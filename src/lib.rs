@@ -4,7 +4,7 @@
 //!
 //! | where | what happens | what it owns |
 //! |---|---|---|
-//! | [`scenario`] | a RON file says what is dyed and how | [`Experiment`](scenario::Experiment) |
+//! | [`scenario`] | a RON file says what is dyed and how | [`scenario::Experiment`] |
 //! | [`pattern`] | where resist and dye are | — |
 //! | [`cloth`] | yarns are woven into two layers of cells | [`Cloth`](cloth::Cloth) |
 //! | [`schedule`] | the order of the stages, the clock of the process | [`ProcessClock`](schedule::ProcessClock) |

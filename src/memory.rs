@@ -6,12 +6,15 @@ use thiserror::Error;
 use crate::scenario::Scenario;
 
 /// Bytes of every field kept for one cell of a layer: three of free dye, two of conductances along
-/// the cloth, half of one between the layers, capacities and their inverse, bound dye, and half of
-/// the resist.
-const BYTES_PER_CELL: u128 = 40;
-/// Bytes for one pixel of the picture: what it shows and its shade, its colour, and the two frames
-/// that wait for the disk.
-const BYTES_PER_PIXEL: u128 = 8 + 3 * 3;
+/// the cloth, half of one between the layers, capacities and their inverse, bound dye, half of the
+/// resist, and half of which cell is seen.
+const BYTES_PER_CELL: u128 = 42;
+/// Bytes for one pixel of the picture: its shade, and its colour five times over: now, on the
+/// contact sheet, and in the three frames that are on their way to the disk.
+const BYTES_PER_PIXEL: u128 = 4 + 5 * 3;
+/// Bytes for one cell of the fields that are recorded, free, bound and held, four times over: being
+/// taken, and in the three states that are on their way to the disk.
+const BYTES_PER_RECORDED_CELL: u128 = 4 * 3 * 4;
 
 /// A cloth that does not fit in memory.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -32,8 +35,27 @@ pub struct MemoryError {
     pub free: u64,
 }
 
-/// Bytes that dyeing and drawing a scenario takes at most, at `scale` pixels a cell.
-pub fn needed(scenario: &Scenario, scale: u32) -> u128 {
+/// What is made of a cloth beyond dyeing it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Use {
+    /// Pixels along one side of a cell.
+    pub scale: u32,
+    /// Whether the fields are recorded.
+    pub fields: bool,
+}
+
+impl Use {
+    /// Pictures at the scenario's own scale.
+    pub fn of(scenario: &Scenario) -> Self {
+        Use {
+            scale: scenario.look.pixels_per_cell,
+            fields: false,
+        }
+    }
+}
+
+/// Bytes that dyeing, drawing and recording a scenario takes at most.
+pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
     let (nx, ny) = scenario.cloth.cells();
     let cells = 2 * nx as u128 * ny as u128;
     let pixels = nx as u128 * ny as u128 * u128::from(scale) * u128::from(scale);
@@ -47,15 +69,18 @@ pub fn needed(scenario: &Scenario, scale: u32) -> u128 {
     let held = 16 * scenario.supply.len() as u128;
     // Images are kept as rasters beside the ones that are drawn.
     let per_layer_cell = 4 * (rasters as u128 + scenario.patterns().len() as u128);
-    cells * (BYTES_PER_CELL + held) + cells / 2 * per_layer_cell + pixels * BYTES_PER_PIXEL
+    let recorded = if fields { BYTES_PER_RECORDED_CELL } else { 0 };
+    cells * (BYTES_PER_CELL + held + recorded)
+        + cells / 2 * per_layer_cell
+        + pixels * BYTES_PER_PIXEL
 }
 
 /// Refuses a scenario that needs more memory than is free.
 ///
 /// # Errors
 /// A [`MemoryError`] with both figures.
-pub fn check(scenario: &Scenario, scale: u32) -> Result<(), MemoryError> {
-    let needed = needed(scenario, scale);
+pub fn check(scenario: &Scenario, made: Use) -> Result<(), MemoryError> {
+    let needed = needed(scenario, made);
     let free = free();
     if needed <= u128::from(free) {
         return Ok(());
@@ -64,7 +89,7 @@ pub fn check(scenario: &Scenario, scale: u32) -> Result<(), MemoryError> {
     Err(MemoryError {
         nx,
         ny,
-        scale,
+        scale: made.scale,
         needed,
         free,
     })

@@ -160,20 +160,19 @@ fn tick(mut clock: ResMut<ProcessClock>, conductances: Res<Conductances>) {
     }
 }
 
-/// Runs [`DyeStep`] until the clock shows `step`, or `go_on` says no: it is asked after every step.
+/// Runs [`DyeStep`] until the clock shows `step`, or `go_on` says no. It is told the step and asked
+/// before every run, so also between the parts of a step that is split.
 ///
 /// Returns whether the step was reached.
 pub fn advance_to(world: &mut World, step: u64, mut go_on: impl FnMut(u64) -> bool) -> bool {
     let reached = world.try_schedule_scope(DyeStep, |world, schedule| {
         loop {
-            let clock = world.resource::<ProcessClock>();
-            if clock.part == 0 {
-                if clock.step >= step {
-                    return true;
-                }
-                if !go_on(clock.step) {
-                    return false;
-                }
+            let now = world.resource::<ProcessClock>().step;
+            if now >= step {
+                return true;
+            }
+            if !go_on(now) {
+                return false;
             }
             schedule.run(world);
         }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::process::ExitCode;
 
 use super::{BAD_INPUT, complain, print};
-use dyelapse::memory;
+use dyelapse::memory::{self, Use};
 use dyelapse::record::Plan;
 use dyelapse::scenario::Experiment;
 
@@ -36,7 +36,7 @@ fn check(name: &str) -> Result<String, String> {
     let plan = Plan::new(scenario, None, None).map_err(|why| format!("{name}: {why}"))?;
     let (nx, ny) = scenario.cloth.cells();
     let hours = plan.steps as f64 * scenario.process.step_h;
-    let megabytes = memory::needed(scenario, scenario.look.pixels_per_cell) / 1_000_000;
+    let megabytes = memory::needed(scenario, Use::of(scenario)) / 1_000_000;
     Ok(format!(
         "right; {nx}×{ny}×2 cells, {} steps ({hours} h), {} frames, at most {} MB of memory",
         plan.steps,

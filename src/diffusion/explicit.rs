@@ -13,7 +13,7 @@
 //! and dye is conserved over any number of steps.
 //!
 //! **Bounds.** With a_ij = G_ij/V_u,i and Σ_j a_ij ≤ 1, c_i moves towards a mean of its neighbours
-//! and never past it. [`Conductances`](super::Conductances) splits a step until
+//! and never past it. [`Conductances`] splits a step until
 //! Σ_j a_ij ≤ 1 − 2⁻¹⁶. That margin is larger than every rounding error of the sum and than the
 //! carry, which is at most half a last bit of c; and rounding is monotone. So 0 ≤ c ≤ 1 holds in
 //! float32 without any clamp.

@@ -83,7 +83,7 @@ pub struct Conductances {
 }
 
 /// The most that a cell may exchange in one split step, as a share of itself: see
-/// [`explicit`](self::explicit) for why the margin is there.
+/// [`explicit`] for why the margin is there.
 pub(crate) const MOST_EXCHANGE: f64 = 1.0 - 1.0 / 65536.0;
 
 impl Conductances {

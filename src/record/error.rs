@@ -52,6 +52,14 @@ pub enum RecordError {
     /// The folder is a file.
     #[error("{} is a file, not a folder", .0.display())]
     NotAFolder(PathBuf),
+    /// The folder cannot be made or looked into.
+    #[error("cannot use the folder {}: {why}", .path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The reason.
+        why: io::Error,
+    },
     /// A file could not be written.
     #[error("cannot write {}: {why}", .path.display())]
     Write {

@@ -19,7 +19,7 @@ impl Folder {
     /// Makes the folder, or takes an empty one. With `force`, one that holds a recording is cleared
     /// of it; files that no recording has are never touched.
     pub fn claim(path: &Path, force: bool) -> Result<Self, RecordError> {
-        let failed = |why| RecordError::Write {
+        let failed = |why| RecordError::Folder {
             path: path.into(),
             why,
         };

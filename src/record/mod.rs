@@ -21,7 +21,7 @@ pub use plan::{Plan, Stop};
 pub use recorder::{RecordPlugin, Recorder};
 pub use video::ffmpeg_is_there;
 
-use crate::memory;
+use crate::memory::{self, Use};
 use crate::scenario::{Experiment, LARGEST_SCALE};
 use crate::schedule::advance_to;
 use crate::texture::Scale;
@@ -77,13 +77,14 @@ pub fn record(
     if !(1..=LARGEST_SCALE).contains(&scale) {
         return Err(RecordError::Scale(scale));
     }
-    memory::check(scenario, scale)?;
+    let fields = options.fields;
+    memory::check(scenario, Use { scale, fields })?;
     let plan = Plan::new(scenario, options.frames, options.steps)?;
     if options.video && !ffmpeg_is_there() {
         return Err(RecordError::NoFfmpeg);
     }
     let folder = Folder::claim(&options.out, options.force)?;
-    let recorder = Recorder::start(experiment, folder, &plan, scale, options.fields)?;
+    let recorder = Recorder::start(experiment, folder, &plan, scale, fields)?;
 
     let mut app = bevy::app::App::new();
     app.add_plugins((DyeingPlugins, RecordPlugin))

@@ -15,6 +15,7 @@ use crate::adsorption::BoundDye;
 use crate::cloth::Cloth;
 use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
+use crate::scenario::units::rounded;
 use crate::scenario::{Experiment, Origin};
 use crate::schedule::{DyeFrame, FrameSet, ProcessClock, TheExperiment};
 use crate::supply::Supplies;
@@ -92,7 +93,7 @@ impl Recorder {
         self.expected = Some(stop);
     }
 
-    /// Whether writing has failed; [`Recorder::finish`] says why.
+    /// Whether writing has failed; `finish` says why.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()
     }
@@ -104,24 +105,37 @@ impl Recorder {
         }
     }
 
-    /// Writes what is written last, and waits for the rest.
-    pub(super) fn finish(mut self, complete: bool) -> Result<Manifest, RecordError> {
-        self.writer.finish()?;
-        if let Some(failed) = self.failed {
-            return Err(failed);
-        }
-        self.manifest.complete = complete;
-        let sheet = self.sheet.draw();
-        self.folder
-            .write("sheet.png", |file| writer::encode(&sheet, file))?;
+    /// Waits for the frames, and writes what is written last. Where a frame could not be written,
+    /// those before it still make a valid recording, as far as there is room for one.
+    pub(super) fn finish(self, complete: bool) -> Result<Manifest, RecordError> {
+        let Recorder {
+            folder,
+            writer,
+            mut manifest,
+            ledger,
+            sheet,
+            failed,
+            ..
+        } = self;
+        let written = match (writer.finish(), failed) {
+            (Err(why), _) | (Ok(()), Some(why)) => Err(why),
+            (Ok(()), None) => Ok(()),
+        };
+        manifest.complete = complete && written.is_ok();
+        let kept = |frame: &&Frame| folder.file(&frame.file).exists();
+        let frames = manifest.frames.iter().take_while(kept).count();
+        manifest.frames.truncate(frames);
         let text = |name: &str, text: &str| {
-            self.folder.write(name, |file| {
+            folder.write(name, |file| {
                 std::io::Write::write_all(file, text.as_bytes())
             })
         };
-        text("ledger.csv", &self.ledger)?;
-        text("recording.ron", &self.manifest.to_ron())?;
-        Ok(self.manifest)
+        let lines: String = ledger.split_inclusive('\n').take(1 + frames).collect();
+        let last = text("recording.ron", &manifest.to_ron())
+            .and_then(|()| text("ledger.csv", &lines))
+            .and_then(|()| folder.write("sheet.png", |file| writer::encode(&sheet.draw(), file)));
+        written.and(last)?;
+        Ok(manifest)
     }
 }
 
@@ -168,8 +182,10 @@ fn keep(
     let Some(stop) = recorder.expected.take() else {
         return;
     };
+    // 3 · 0.1 h is 0.3 h and not 0.30000000000000004 h.
+    let hours = rounded(clock.hours(), 12);
     if stop.sheet {
-        recorder.sheet.add(&picture, clock.step, clock.hours());
+        recorder.sheet.add(&picture, clock.step, hours);
     }
     let Some(frame) = stop.frame else {
         return;
@@ -186,13 +202,12 @@ fn keep(
             });
             recorder.failed = written.err();
         }
-        let state = State::take(&dyed, clock.step, clock.hours());
+        let state = State::take(&dyed, clock.step, hours);
         recorder.give(Job::State {
             name: format!("state_{frame:05}.npz"),
             state: Box::new(state),
         });
     }
-    let hours = clock.hours();
     recorder.manifest.frames.push(Frame {
         file: name,
         step: clock.step,

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use super::error::nearest;
 use super::{Images, Scenario, ScenarioError, SourceError, bundled, bundled_names};
-use crate::memory;
+use crate::memory::{self, Use};
 
 /// The longest scenario file that is read, bytes.
 const LONGEST_TEXT: u64 = 16 << 20;
@@ -70,8 +70,9 @@ impl Experiment {
     /// A [`ScenarioError`] that names the field.
     pub fn from_scenario(name: &str, scenario: Scenario) -> Result<Self, ScenarioError> {
         scenario.check()?;
-        let (nx, ny) = scenario.cloth.cells();
-        let images = Images::load(&scenario.patterns(), Path::new(""), (nx, ny))?;
+        memory::check(&scenario, Use::of(&scenario))?;
+        let here = Path::new("");
+        let images = Images::load(&scenario.patterns(), here, scenario.cloth.cells())?;
         let text = ron::ser::to_string_pretty(&scenario, ron::ser::PrettyConfig::default())
             .unwrap_or_default();
         Ok(Experiment {
@@ -96,7 +97,7 @@ impl Experiment {
         let problem = |problem| source(SourceError::from_problem(name, &text, &problem));
         scenario.check().map_err(problem)?;
         // Before anything is as large as the cloth, even one of its pictures.
-        memory::check(&scenario, scenario.look.pixels_per_cell)?;
+        memory::check(&scenario, Use::of(&scenario))?;
         let folder = match &origin {
             Origin::File(path) => path.parent().unwrap_or(Path::new("")),
             _ => Path::new(""),
