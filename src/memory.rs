@@ -16,23 +16,37 @@ const BYTES_PER_PIXEL: u128 = 4 + 5 * 3;
 /// taken, and in the three states that are on their way to the disk.
 const BYTES_PER_RECORDED_CELL: u128 = 4 * 3 * 4;
 
-/// A cloth that does not fit in memory.
+/// The most cells a layer may have: a cell is named by 32 bits.
+const MOST_CELLS: u128 = 1 << 31;
+
+/// A cloth that is too large.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error(
-    "a cloth of {nx}×{ny}×2 cells drawn at {scale} pixels a cell needs {} of memory, \
-     but only {} is free", gigabytes(*.needed), gigabytes(u128::from(*.free))
-)]
-pub struct MemoryError {
-    /// Cells across.
-    pub nx: usize,
-    /// Cells down.
-    pub ny: usize,
-    /// Pixels along one side of a cell.
-    pub scale: u32,
-    /// Bytes needed.
-    pub needed: u128,
-    /// Bytes free.
-    pub free: u64,
+pub enum MemoryError {
+    /// It does not fit in memory.
+    #[error(
+        "a cloth of {nx}×{ny}×2 cells drawn at {scale} pixels a cell needs {} of memory, \
+         but only {} is free", gigabytes(*.needed), gigabytes(u128::from(*.free))
+    )]
+    DoesNotFit {
+        /// Cells across.
+        nx: usize,
+        /// Cells down.
+        ny: usize,
+        /// Pixels along one side of a cell.
+        scale: u32,
+        /// Bytes needed.
+        needed: u128,
+        /// Bytes free.
+        free: u64,
+    },
+    /// It would fit, but has more cells than can be counted.
+    #[error("a cloth of {nx}×{ny}×2 cells has more than {MOST_CELLS} in a layer")]
+    TooManyCells {
+        /// Cells across.
+        nx: usize,
+        /// Cells down.
+        ny: usize,
+    },
 }
 
 /// What is made of a cloth beyond dyeing it.
@@ -75,24 +89,27 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
         + pixels * BYTES_PER_PIXEL
 }
 
-/// Refuses a scenario that needs more memory than is free.
+/// Refuses a scenario whose cloth is too large.
 ///
 /// # Errors
 /// A [`MemoryError`] with both figures.
 pub fn check(scenario: &Scenario, made: Use) -> Result<(), MemoryError> {
+    let (nx, ny) = scenario.cloth.cells();
     let needed = needed(scenario, made);
     let free = free();
-    if needed <= u128::from(free) {
-        return Ok(());
+    if needed > u128::from(free) {
+        return Err(MemoryError::DoesNotFit {
+            nx,
+            ny,
+            scale: made.scale,
+            needed,
+            free,
+        });
     }
-    let (nx, ny) = scenario.cloth.cells();
-    Err(MemoryError {
-        nx,
-        ny,
-        scale: made.scale,
-        needed,
-        free,
-    })
+    if nx as u128 * ny as u128 > MOST_CELLS {
+        return Err(MemoryError::TooManyCells { nx, ny });
+    }
+    Ok(())
 }
 
 /// What is taken to be free where the system does not tell, bytes.

@@ -9,9 +9,6 @@ use crate::cloth::Weave;
 /// The most cells a cloth may have along one side.
 pub const LONGEST_SIDE: usize = 1 << 20;
 
-/// The most cells a layer may have: a cell is named by 32 bits.
-const MOST_CELLS: usize = 1 << 31;
-
 /// The cloth (paper D §4.1).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Cloth", deny_unknown_fields)]
@@ -133,12 +130,6 @@ impl ClothSpec {
         self.size
             .1
             .check(&size.item(1), self.cell_mm, 1.0, longest)?;
-        let (nx, ny) = self.cells();
-        if nx * ny > MOST_CELLS {
-            return Err(size.problem(format!(
-                "at most {MOST_CELLS} cells in a layer are allowed, but this is {nx}×{ny}"
-            )));
-        }
         self.weave.check(&at.field("weave"))?;
         self.warp.check(&at.field("warp"), self.cell_mm)?;
         self.weft().check(&at.field("weft"), self.cell_mm)?;
