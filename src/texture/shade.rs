@@ -9,7 +9,7 @@ use crate::scenario::YarnLook;
 /// Shade of a gap that is open through both layers.
 const GAP_SHADE: f32 = 0.50;
 /// Samples along one side of a cell at the least: what is finer than a pixel is averaged.
-const SAMPLES_A_CELL: usize = 4;
+const SAMPLES_A_CELL: usize = 3;
 
 /// The layer that is seen at a position: the yarn that is up, if it is fibre; else the other
 /// layer's fibre; else the gap, seen in the weft layer.
@@ -44,26 +44,33 @@ pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<f32> 
         .for_each(|(py, row)| {
             for (px, shade) in row.iter_mut().enumerate() {
                 let (y, x) = (py / scale, px / scale);
+                let layer = seen(cloth, y, x);
+                if !cloth.fibre(layer, y, x) {
+                    *shade = GAP_SHADE;
+                    continue;
+                }
+                let yarns = &shades[layer as usize];
+                let point = |v: f32, u: f32| point(cloth, layer, (y, x), (v, u));
                 let mut sum = 0.0;
                 for j in 0..samples {
                     let v = ((py * samples + j) as f32 + 0.5) / fine;
                     for i in 0..samples {
                         let u = ((px * samples + i) as f32 + 0.5) / fine;
-                        sum += at(cloth, &shades, (y, x), (v, u));
+                        sum += yarns.surface(point(v, u));
                     }
                 }
-                *shade = sum / (samples * samples) as f32;
+                // What changes slowly along a yarn is taken once a pixel.
+                let middle = |p: usize| (p as f32 + 0.5) / scale as f32;
+                let uneven = yarns.unevenness(point(middle(py), middle(px)));
+                *shade = uneven * sum / (samples * samples) as f32;
             }
         });
     picture
 }
 
-/// The shade at a point `(v, u)`, down and across in cells, of the cell `(y, x)`.
-fn at(cloth: &Cloth, shades: &[YarnShade; 2], (y, x): (usize, usize), (v, u): (f32, f32)) -> f32 {
-    let layer = seen(cloth, y, x);
-    if !cloth.fibre(layer, y, x) {
-        return GAP_SHADE;
-    }
+/// The point on the yarn of `layer` in the cell `(y, x)` at the place `(v, u)`, down and across in
+/// cells.
+fn point(cloth: &Cloth, layer: Layer, (y, x): (usize, usize), (v, u): (f32, f32)) -> Point {
     let (warp, weft) = (cloth.warp.number(x), cloth.weft.number(y));
     let warp_up = |e, p| if cloth.weave.warp_up(e, p) { 1.0 } else { -1.0 };
     let weft_up = |e, p| -warp_up(e, p);
@@ -75,7 +82,7 @@ fn at(cloth: &Cloth, shades: &[YarnShade; 2], (y, x): (usize, usize), (v, u): (f
     let weft_axis = axis(&cloth.warp, u, repeat.0, |crossing| weft_up(crossing, weft));
     let warp_surface = warp_axis.height + round(warp_across);
     let weft_surface = weft_axis.height + round(weft_across);
-    let point = match layer {
+    match layer {
         Layer::Warp => Point {
             yarn: warp,
             across: warp_across,
@@ -90,8 +97,7 @@ fn at(cloth: &Cloth, shades: &[YarnShade; 2], (y, x): (usize, usize), (v, u): (f
             clearance: weft_surface - warp_surface,
             slope: weft_axis.slope,
         },
-    };
-    shades[layer as usize].at(point)
+    }
 }
 
 /// The place across a yarn: −1 at one edge, 1 at the other, beyond in the gap.

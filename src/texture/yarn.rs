@@ -83,15 +83,14 @@ impl YarnShade {
         }
     }
 
-    /// The shade at a point, about 1 where it is brightest.
-    pub fn at(&self, point: Point) -> f32 {
+    /// The shade at a point of an even yarn, about 1 where it is brightest.
+    pub fn surface(&self, point: Point) -> f32 {
         let sine = point.across.clamp(-0.999, 0.999);
         let cosine = sqrtf(1.0 - sine * sine);
         self.light(point, sine, cosine)
             * self.depth(point.clearance)
-            * BRIGHTNESS
             * self.fibres(point, sine)
-            * self.unevenness(point)
+            * BRIGHTNESS
     }
 
     /// Light on the round yarn, tilted where it rises or dives.
@@ -137,8 +136,8 @@ impl YarnShade {
         1.0 - rough * (0.45 * even + 0.55 * uneven)
     }
 
-    /// Thick and thin places along the yarn, and loose fibre on it.
-    fn unevenness(&self, point: Point) -> f32 {
+    /// Thick and thin places along the yarn, and loose fibre on it: a factor around 1.
+    pub fn unevenness(&self, point: Point) -> f32 {
         let uneven = self.look.unevenness as f32;
         let own = 37.0 * point.yarn as f32;
         let slub = self
