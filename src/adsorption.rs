@@ -1,7 +1,8 @@
 //! Dye binds: one way, in fibre only, up to what the isotherm and the fibre allow (paper D §4.2b,
 //! eqs 6–8; model section 4).
 //!
-//! Each step binds ΔA = clamp( (D_ab·Δt/Δd²)·φ, 0, A_lim − A ) with A_lim = min(V_d, A_d(φ)).
+//! Each step binds ΔA = clamp( (D_ab·Δt/Δd²)·φ, 0, A_lim − A ) with A_lim = min(V_d, A_d(φ)), or
+//! after paper B ΔA = α_d·(a_d − A)·φ.
 
 use bevy::prelude::*;
 use rayon::prelude::*;
@@ -34,12 +35,18 @@ impl Plugin for AdsorptionPlugin {
 pub struct BoundDye {
     /// The amounts.
     pub amount: Vec<f32>,
+    /// What rounding has left over in each cell: it holds `amount + carry`.
+    pub carry: Vec<f32>,
 }
 
 impl BoundDye {
     /// The bound dye in the whole cloth, in cell volumes.
     pub fn total(&self) -> f64 {
-        self.amount.iter().map(|a| f64::from(*a)).sum()
+        let exactly = self.amount.iter().zip(&self.carry);
+        // Not `sum`: the sum of nothing would be −0.
+        exactly.fold(0.0, |sum, (a, carry)| {
+            sum + f64::from(*a) + f64::from(*carry)
+        })
     }
 
     /// The bound dye of one cell.
@@ -48,8 +55,11 @@ impl BoundDye {
     }
 }
 
-/// D_ab·Δt/Δd²: the share of its free dye that a cell may bind in one whole step.
+/// D_ab·Δt/Δd², or α_d: the most of its free dye that a cell may bind in one whole step.
 pub(crate) fn share_a_step(spec: &AdsorptionSpec, scenario: &Scenario) -> f64 {
+    if let Isotherm::Saturating { speed, .. } = spec.isotherm {
+        return speed;
+    }
     let d_ab = spec.rate * scenario.dye.diffusivity.in_water();
     d_ab * scenario.process.step_h / (scenario.cloth.cell_mm * scenario.cloth.cell_mm)
 }
@@ -67,6 +77,7 @@ impl Isotherm {
                 let filled = kl as f32 * phi;
                 v_d * filled / (1.0 + filled)
             }
+            Isotherm::Saturating { most, .. } => most as f32,
         }
     }
 }
@@ -76,9 +87,10 @@ impl Isotherm {
 struct Pore {
     /// c, the concentration of its liquid, and what rounding has left over of it.
     c: f32,
-    carry: f32,
-    /// A, its bound dye.
-    bound: f32,
+    c_carry: f32,
+    /// A, its bound dye, and what rounding has left over of it.
+    a: f32,
+    a_carry: f32,
     /// V_u and V_d, its capacities.
     v_u: f32,
     v_d: f32,
@@ -86,35 +98,46 @@ struct Pore {
     per_v_u: f32,
 }
 
-/// The most of its free dye that a cell may lose in one split step: above
-/// [`MOST_EXCHANGE`](crate::diffusion::MOST_EXCHANGE), below 1 by more than rounding.
-const NEARLY_ALL: f32 = 1.0 - 1.0 / 131_072.0;
-
-/// One step of one cell: its concentration, carry and bound dye afterwards.
+/// One step of one cell. `limit` is A_d(φ) for a given V_d.
 ///
 /// `share` is D_ab·Δt/Δd² and less than 1. Neither limit is ever passed: a cell that already has
 /// more than the isotherm allows by now keeps it and binds no more.
 #[inline(always)]
-fn bind(limit: impl Fn(f32, f32) -> f32, share: f32, pore: Pore) -> (f32, f32, f32) {
+fn bind(limit: impl Fn(f32, f32) -> f32, share: f32, pore: Pore) -> Pore {
     let phi = pore.c * pore.v_u;
     let limit = limit(phi, pore.v_d).min(pore.v_d);
-    let bound = (pore.bound + share * phi).min(limit.max(pore.bound));
-    // Exactly what the bound dye grew by in float32, so that no rounding makes or loses dye. Where
-    // rounding up would take nearly all that is there, or more, it waits for a later step.
-    let gained = bound - pore.bound;
-    let waits = gained > phi * NEARLY_ALL;
-    let (c, carry) = add(pore.c, pore.carry, -gained * pore.per_v_u);
-    if waits {
-        (pore.c, pore.carry, pore.bound)
-    } else {
-        (c, carry, bound)
+    let room = (limit - pore.a - pore.a_carry).max(0.0);
+    take(pore, (share * phi).min(room), limit)
+}
+
+/// One step of one cell after paper B: ΔA = α_d·(a_d − A)·φ, with `speed` α_d and `most` a_d.
+#[inline(always)]
+fn saturate(most: f32, speed: f32, pore: Pore) -> Pore {
+    let limit = most.min(pore.v_d);
+    let room = (limit - pore.a - pore.a_carry).max(0.0);
+    take(pore, speed * room * (pore.c * pore.v_u), limit)
+}
+
+/// Takes `gained` out of the liquid and binds it, up to `limit` or to what is bound already.
+#[inline(always)]
+fn take(pore: Pore, gained: f32, limit: f32) -> Pore {
+    let (c, c_carry) = add(pore.c, pore.c_carry, -gained * pore.per_v_u);
+    let change = gained + pore.a_carry;
+    // The bounds only decide which way the last bit is rounded; the carry keeps the rest.
+    let a = (pore.a + change).min(limit.max(pore.a)).max(pore.a);
+    Pore {
+        c,
+        c_carry,
+        a,
+        a_carry: change - (a - pore.a),
+        ..pore
     }
 }
 
 /// Cells that one task binds.
 const CELLS_A_TASK: usize = 1 << 14;
 
-/// One (split) step of every cell. `share` is D_ab·Δt/Δd².
+/// One (split) step of every cell. `share` is D_ab·Δt/Δd², or α_d.
 pub fn step(
     isotherm: Isotherm,
     share: f32,
@@ -128,14 +151,16 @@ pub fn step(
         .par_chunks_mut(CELLS_A_TASK)
         .zip(free.carry.par_chunks_mut(CELLS_A_TASK))
         .zip(bound.amount.par_chunks_mut(CELLS_A_TASK))
+        .zip(bound.carry.par_chunks_mut(CELLS_A_TASK))
         .zip(cloth.capacity_free.par_chunks(CELLS_A_TASK))
         .zip(cloth.capacity_bound.par_chunks(CELLS_A_TASK))
         .zip(per_capacity.par_chunks(CELLS_A_TASK));
-    tasks.for_each(|(((((c, carry), bound), v_u), v_d), per_v_u)| {
+    tasks.for_each(|((((((c, c_carry), a), a_carry), v_u), v_d), per_v_u)| {
         let pores = Pores {
             c,
-            carry,
-            bound,
+            c_carry,
+            a,
+            a_carry,
             v_u,
             v_d,
             per_v_u,
@@ -147,8 +172,9 @@ pub fn step(
 /// The fields of neighbouring cells, all of one length.
 struct Pores<'a> {
     c: &'a mut [f32],
-    carry: &'a mut [f32],
-    bound: &'a mut [f32],
+    c_carry: &'a mut [f32],
+    a: &'a mut [f32],
+    a_carry: &'a mut [f32],
     v_u: &'a [f32],
     v_d: &'a [f32],
     per_v_u: &'a [f32],
@@ -158,44 +184,48 @@ struct Pores<'a> {
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn bind_all(isotherm: Isotherm, share: f32, pores: Pores) {
     match isotherm {
-        Isotherm::Partition { k } => {
-            pores.each(|phi, v_d| Isotherm::Partition { k }.limit(phi, v_d), share);
-        }
-        Isotherm::Freundlich { k, b: 0.5 } => {
-            pores.each(
-                |phi, v_d| Isotherm::Freundlich { k, b: 0.5 }.limit(phi, v_d),
-                share,
-            );
-        }
-        Isotherm::Freundlich { k, b } => {
-            pores.each(
-                |phi, v_d| Isotherm::Freundlich { k, b }.limit(phi, v_d),
-                share,
-            );
-        }
-        Isotherm::Langmuir { kl } => {
-            pores.each(|phi, v_d| Isotherm::Langmuir { kl }.limit(phi, v_d), share);
+        Isotherm::Partition { k } => pores.each(|pore| {
+            let limit = |phi, v_d| Isotherm::Partition { k }.limit(phi, v_d);
+            bind(limit, share, pore)
+        }),
+        Isotherm::Freundlich { k, b: 0.5 } => pores.each(|pore| {
+            let limit = |phi, v_d| Isotherm::Freundlich { k, b: 0.5 }.limit(phi, v_d);
+            bind(limit, share, pore)
+        }),
+        Isotherm::Freundlich { k, b } => pores.each(|pore| {
+            let limit = |phi, v_d| Isotherm::Freundlich { k, b }.limit(phi, v_d);
+            bind(limit, share, pore)
+        }),
+        Isotherm::Langmuir { kl } => pores.each(|pore| {
+            let limit = |phi, v_d| Isotherm::Langmuir { kl }.limit(phi, v_d);
+            bind(limit, share, pore)
+        }),
+        Isotherm::Saturating { most, .. } => {
+            pores.each(|pore| saturate(most as f32, share, pore));
         }
     }
 }
 
 impl Pores<'_> {
     #[inline(always)]
-    fn each(self, limit: impl Fn(f32, f32) -> f32, share: f32) {
+    fn each(self, bind: impl Fn(Pore) -> Pore) {
         // Slices of one known length let the compiler drop every bounds check.
         let n = self.c.len();
-        let (c, carry, bound) = (&mut self.c[..n], &mut self.carry[..n], &mut self.bound[..n]);
+        let (c, c_carry) = (&mut self.c[..n], &mut self.c_carry[..n]);
+        let (a, a_carry) = (&mut self.a[..n], &mut self.a_carry[..n]);
         let (v_u, v_d, per_v_u) = (&self.v_u[..n], &self.v_d[..n], &self.per_v_u[..n]);
         for i in 0..n {
-            let pore = Pore {
+            let pore = bind(Pore {
                 c: c[i],
-                carry: carry[i],
-                bound: bound[i],
+                c_carry: c_carry[i],
+                a: a[i],
+                a_carry: a_carry[i],
                 v_u: v_u[i],
                 v_d: v_d[i],
                 per_v_u: per_v_u[i],
-            };
-            (c[i], carry[i], bound[i]) = bind(&limit, share, pore);
+            });
+            (c[i], c_carry[i]) = (pore.c, pore.c_carry);
+            (a[i], a_carry[i]) = (pore.a, pore.a_carry);
         }
     }
 }
@@ -207,6 +237,7 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
     };
     commands.insert_resource(BoundDye {
         amount: vec![0.0; cells],
+        carry: vec![0.0; cells],
     });
 }
 

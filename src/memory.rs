@@ -3,15 +3,20 @@
 use sysinfo::System;
 use thiserror::Error;
 
+use crate::pattern::Pattern;
 use crate::scenario::Scenario;
 
 /// Bytes of every field kept for one cell of a layer: three of free dye, two of conductances along
-/// the cloth, half of one between the layers, capacities and their inverse, bound dye, half of the
-/// resist, and half of which cell is seen.
-const BYTES_PER_CELL: u128 = 42;
-/// Bytes for one pixel of the picture: its shade, and its colour five times over: now, on the
-/// contact sheet, and in the three frames that are on their way to the disk.
+/// the cloth, half of one between the layers, capacities and their inverse, half of the resist, and
+/// half of which cell is seen.
+const BYTES_PER_CELL: u128 = 38;
+/// Bytes of bound dye and its carry.
+const BYTES_PER_BINDING_CELL: u128 = 8;
+/// Bytes for one pixel of the picture: its shade, and its colour five times over: now, while it is
+/// made smaller for the contact sheet, and in the three frames that are on their way to the disk.
 const BYTES_PER_PIXEL: u128 = 4 + 5 * 3;
+/// Bytes of the contact sheet for each of its places, and again for the sheet as a whole.
+const BYTES_PER_SHEET_PLACE: u128 = 2 * 3 * (crate::record::LARGEST_TILE as u128).pow(2);
 /// Bytes for one cell of the fields that are recorded, free, bound and held, four times over: being
 /// taken, and in the three states that are on their way to the disk.
 const BYTES_PER_RECORDED_CELL: u128 = 4 * 3 * 4;
@@ -79,14 +84,20 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
         .map(|pattern| pattern.rasters_at_once())
         .max()
         .unwrap_or(0);
-    // A held cell is listed with its place and dose, in both layers.
-    let held = 16 * scenario.supply.len() as u128;
+    // A held cell is listed with its place and dose: while it lasts, for its end, and among all.
+    let held = 3 * 8 * scenario.supply.len() as u128;
     // Images are kept as rasters beside the ones that are drawn.
-    let per_layer_cell = 4 * (rasters as u128 + scenario.patterns().len() as u128);
+    let every = scenario.patterns();
+    let is_image = |(pattern, _): &&(&Pattern, _)| matches!(pattern, Pattern::Image { .. });
+    let images = every.iter().filter(is_image).count();
+    let per_layer_cell = 4 * (rasters + images) as u128;
     let recorded = if fields { BYTES_PER_RECORDED_CELL } else { 0 };
-    cells * (BYTES_PER_CELL + held + recorded)
+    let binding = scenario.adsorption.map_or(0, |_| BYTES_PER_BINDING_CELL);
+    let places = scenario.record.sheet.len().max(8) as u128;
+    cells * (BYTES_PER_CELL + held + recorded + binding)
         + cells / 2 * per_layer_cell
         + pixels * BYTES_PER_PIXEL
+        + places * BYTES_PER_SHEET_PLACE.min(40 * pixels)
 }
 
 /// Refuses a scenario whose cloth is too large.
@@ -116,7 +127,7 @@ pub fn check(scenario: &Scenario, made: Use) -> Result<(), MemoryError> {
 const UNKNOWN_MEMORY: u64 = 4 << 30;
 
 /// Bytes of memory that this process may still take.
-fn free() -> u64 {
+pub(crate) fn free() -> u64 {
     let Ok(mut system) = System::new() else {
         return UNKNOWN_MEMORY;
     };

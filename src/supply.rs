@@ -1,13 +1,16 @@
-//! Dye enters: once as a dose, or held at a concentration while it lasts (model section 3).
+//! Dye enters: once as a dose, held at a concentration while it lasts, or from a bath through the
+//! cover of the cloth (model section 3).
 //!
-//! Supply brings the cloth to what is demanded **at this moment**: run twice at the same moment, it
-//! supplies nothing the second time. So it runs at the beginning of every step, and again before a
-//! frame is taken, and neither the frames nor their number change the process.
+//! Supply brings the cloth to what is demanded **at this moment**: what is given once is given
+//! once, and what is kept is kept at one concentration, whatever the order of the scenario. Run
+//! twice at the same moment, it supplies nothing the second time. So it runs at the beginning of
+//! every (split) step, and again before a frame is taken, and neither the frames nor their number
+//! change the process. Only a bath takes time, and runs with the steps alone.
 
 use bevy::prelude::*;
 
 use crate::cloth::Cloth;
-use crate::diffusion::FreeDye;
+use crate::diffusion::{Conductances, FreeDye};
 use crate::ledger::Ledger;
 use crate::pattern::{Canvas, Raster};
 use crate::scenario::SupplySpec;
@@ -21,140 +24,227 @@ pub struct SupplyPlugin;
 impl Plugin for SupplyPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
-            .add_systems(DyeStep, supply.in_set(DyeSet::Supply))
-            .add_systems(DyeFrame, supply.in_set(FrameSet::Supply));
+            .add_systems(DyeStep, (bring, soak).chain().in_set(DyeSet::Supply))
+            .add_systems(DyeFrame, bring.in_set(FrameSet::Supply));
     }
 }
 
-/// Everything that is supplied to the cloth, in the order of the scenario.
+/// Everything that is supplied to the cloth.
 #[derive(Resource, Debug, Clone, Default)]
 pub struct Supplies {
-    list: Vec<Supply>,
+    /// What is given once, in order of time; at one moment ending holds come before doses.
+    events: Vec<Event>,
+    /// Events that are done.
+    done: usize,
+    holds: Vec<Hold>,
+    baths: Vec<Bath>,
+    /// What is kept now, in the order of the cells, and the step until which that is known.
+    kept: Vec<Cell>,
+    kept_until: u64,
 }
 
-/// One supply: the cells that it reaches and the concentration it brings to each.
+/// A cell's index in a field, and the concentration that is brought to it.
+type Cell = (u32, f32);
+
+/// Something that is given at one moment.
 #[derive(Debug, Clone)]
-struct Supply {
-    /// Index of a cell in a field, and its concentration.
-    cells: Vec<(u32, f32)>,
-    course: Course,
+struct Event {
+    at: u64,
+    cells: Vec<Cell>,
+    gift: Gift,
 }
 
-/// When dye is supplied, in steps.
-#[derive(Debug, Clone, Copy)]
-enum Course {
-    Once { at: u64, done: bool },
-    Held { from: u64, until: Option<u64> },
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Gift {
+    /// A hold ends: it tops up a last time, so that its last moment shows it whole.
+    LastOfHold,
+    /// A dose is poured on: it never takes away what is there.
+    Dose,
 }
 
-impl Course {
-    /// Whether a hold tops up at the moment of a step: from its beginning to its end, both included.
-    fn tops_up(self, step: u64) -> bool {
-        match self {
-            Course::Once { .. } => false,
-            Course::Held { from, until } => from <= step && until.is_none_or(|until| step <= until),
-        }
-    }
+/// A concentration that is kept from one step on, up to but not at another.
+#[derive(Debug, Clone)]
+struct Hold {
+    from: u64,
+    until: u64,
+    cells: Vec<Cell>,
+}
 
-    /// Whether a hold goes on after the moment of a step.
-    fn goes_on(self, step: u64) -> bool {
-        let Course::Held { until, .. } = self else {
-            return false;
-        };
-        self.tops_up(step) && until != Some(step)
-    }
+/// A bath that reaches the cloth through its cover, from one step on, up to but not at another.
+#[derive(Debug, Clone)]
+struct Bath {
+    from: u64,
+    until: u64,
+    concentration: f32,
+    /// A cell's index, and the share of the difference α·p that one step makes up there.
+    cells: Vec<Cell>,
 }
 
 impl Supplies {
     /// The concentration kept in each cell from a step on; NaN where none is.
-    ///
-    /// Where two holds overlap, the later one of the scenario counts.
-    pub fn held(&self, step: u64, cells: usize) -> Vec<f32> {
+    pub fn held(&mut self, step: u64, cells: usize) -> Vec<f32> {
+        self.find_kept(step);
         let mut held = vec![f32::NAN; cells];
-        for supply in self.list.iter().filter(|s| s.course.goes_on(step)) {
-            for (i, concentration) in &supply.cells {
-                held[*i as usize] = *concentration;
-            }
+        for (i, concentration) in &self.kept {
+            held[*i as usize] = *concentration;
         }
         held
     }
-}
 
-/// Brings free dye to what the supplies demand at `step`, and books what that took.
-pub fn bring(
-    supplies: &mut Supplies,
-    step: u64,
-    cloth: &Cloth,
-    dye: &mut FreeDye,
-    ledger: &mut Ledger,
-) {
-    for supply in &mut supplies.list {
-        let pours = match &mut supply.course {
-            Course::Once { at, done } if !*done && step >= *at => {
-                *done = true;
-                true
+    /// Brings free dye to what is demanded at `step`, and books what that took.
+    pub fn bring(&mut self, step: u64, cloth: &Cloth, dye: &mut FreeDye, ledger: &mut Ledger) {
+        self.find_kept(step);
+        while let Some(event) = self.events.get(self.done).filter(|event| event.at <= step) {
+            for (i, concentration) in &event.cells {
+                let is_kept = self.kept.binary_search_by_key(i, |(kept, _)| *kept).is_ok();
+                let i = *i as usize;
+                let has_more = event.gift == Gift::Dose && dye.concentration[i] >= *concentration;
+                if !is_kept && !has_more {
+                    ledger.book(dye.bring(i, *concentration) * f64::from(cloth.capacity_free[i]));
+                }
             }
-            course if course.tops_up(step) => false,
-            _ => continue,
-        };
-        for (i, concentration) in &supply.cells {
-            let i = *i as usize;
-            // A dose is poured on: it never takes away what is there. A hold does.
-            if pours && dye.concentration[i] >= *concentration {
-                continue;
-            }
-            let grown = dye.bring(i, *concentration);
-            ledger.book(grown * f64::from(cloth.capacity_free[i]));
+            self.done += 1;
         }
+        for (i, concentration) in &self.kept {
+            let i = *i as usize;
+            ledger.book(dye.bring(i, *concentration) * f64::from(cloth.capacity_free[i]));
+        }
+    }
+
+    /// Lets dye in (or out) from the baths during one of `splits` parts of a step, where nothing is
+    /// kept. Unlike [`Supplies::bring`] this takes time: it must run once for each part, after it.
+    pub fn soak(
+        &self,
+        step: u64,
+        splits: u32,
+        cloth: &Cloth,
+        dye: &mut FreeDye,
+        ledger: &mut Ledger,
+    ) {
+        let part = 1.0 / splits as f32;
+        let is_on = |bath: &&Bath| bath.from <= step && step < bath.until;
+        for bath in self.baths.iter().filter(is_on) {
+            // Both lists are in the order of the cells.
+            let mut kept = self.kept.iter().map(|(i, _)| *i).peekable();
+            for (i, share) in &bath.cells {
+                while kept.next_if(|kept| kept < i).is_some() {}
+                if kept.peek() == Some(i) {
+                    continue;
+                }
+                let i = *i as usize;
+                let missing = bath.concentration - dye.concentration[i];
+                let grown = dye.grow(i, part * share * missing);
+                ledger.book(grown * f64::from(cloth.capacity_free[i]));
+            }
+        }
+    }
+
+    /// Finds what is kept at a step. Where holds overlap, the later one of the scenario counts.
+    fn find_kept(&mut self, step: u64) {
+        if step < self.kept_until {
+            return;
+        }
+        let is_on = |hold: &&Hold| hold.from <= step && step < hold.until;
+        let mut kept: Vec<Cell> = Vec::new();
+        for hold in self.holds.iter().filter(is_on) {
+            // Later ones come behind earlier ones, and the sort leaves equals in their order.
+            kept.extend(&hold.cells);
+        }
+        kept.sort_by_key(|(i, _)| *i);
+        kept.reverse();
+        kept.dedup_by_key(|(i, _)| *i);
+        kept.reverse();
+        self.kept = kept;
+        let changes = self.holds.iter().flat_map(|hold| [hold.from, hold.until]);
+        self.kept_until = changes
+            .filter(|change| *change > step)
+            .min()
+            .unwrap_or(u64::MAX);
     }
 }
 
-fn supply(
+fn bring(
     mut supplies: ResMut<Supplies>,
     clock: Res<ProcessClock>,
     cloth: Res<Cloth>,
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
-    bring(&mut supplies, clock.step, &cloth, &mut dye, &mut ledger);
+    supplies.bring(clock.step, &cloth, &mut dye, &mut ledger);
+}
+
+fn soak(
+    supplies: Res<Supplies>,
+    clock: Res<ProcessClock>,
+    conductances: Res<Conductances>,
+    cloth: Res<Cloth>,
+    mut dye: ResMut<FreeDye>,
+    mut ledger: ResMut<Ledger>,
+) {
+    supplies.soak(
+        clock.step,
+        conductances.splits,
+        &cloth,
+        &mut dye,
+        &mut ledger,
+    );
 }
 
 fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
     let scenario = &experiment.scenario;
     let canvas = Canvas::of(&experiment);
     let step_h = scenario.process.step_h;
-    let list = scenario
-        .supply
-        .iter()
-        .map(|spec| {
-            let (dose, course) = match spec {
-                SupplySpec::Dose { dose, at, .. } => {
-                    let at = at.steps(step_h);
-                    (*dose, Course::Once { at, done: false })
+    let mut supplies = Supplies::default();
+    for spec in &scenario.supply {
+        let shape = canvas.draw(spec.shape());
+        match spec {
+            SupplySpec::Dose { dose, at, .. } => supplies.events.push(Event {
+                at: at.steps(step_h),
+                cells: reached(&shape, *dose as f32, &cloth),
+                gift: Gift::Dose,
+            }),
+            SupplySpec::Hold {
+                dose, from, until, ..
+            } => {
+                let cells = reached(&shape, *dose as f32, &cloth);
+                if let Some(until) = until {
+                    supplies.events.push(Event {
+                        at: until.steps(step_h),
+                        cells: cells.clone(),
+                        gift: Gift::LastOfHold,
+                    });
                 }
-                SupplySpec::Hold {
-                    dose, from, until, ..
-                } => {
-                    let from = from.steps(step_h);
-                    let until = until.map(|until| until.steps(step_h));
-                    (*dose, Course::Held { from, until })
-                }
-            };
-            let cells = reached(&canvas.draw(spec.shape()), dose as f32, &cloth);
-            Supply { cells, course }
-        })
-        .collect();
-    commands.insert_resource(Supplies { list });
+                supplies.holds.push(Hold {
+                    from: from.steps(step_h),
+                    until: until.map_or(u64::MAX, |until| until.steps(step_h)),
+                    cells,
+                });
+            }
+            SupplySpec::Bath {
+                dose,
+                speed,
+                from,
+                until,
+                ..
+            } => supplies.baths.push(Bath {
+                from: from.steps(step_h),
+                until: until.map_or(u64::MAX, |until| until.steps(step_h)),
+                concentration: *dose as f32,
+                cells: reached(&shape, *speed as f32, &cloth),
+            }),
+        }
+    }
+    supplies.events.sort_by_key(|event| (event.at, event.gift));
+    commands.insert_resource(supplies);
 }
 
-/// The cells of both layers that a shape reaches, with their concentration: the dose times the
-/// value of the shape. Cells that hold no liquid take no part.
-fn reached(shape: &Raster, dose: f32, cloth: &Cloth) -> Vec<(u32, f32)> {
+/// The cells of both layers that a shape reaches, each with `most` times the value of the shape. Cells that hold no liquid take no part.
+fn reached(shape: &Raster, most: f32, cloth: &Cloth) -> Vec<Cell> {
     let layer = shape.values.len();
     (0..2 * layer)
         .filter_map(|i| {
             let value = shape.values[i % layer];
-            (value > 0.0 && cloth.capacity_free[i] > 0.0).then_some((i as u32, dose * value))
+            (value > 0.0 && cloth.capacity_free[i] > 0.0).then_some((i as u32, most * value))
         })
         .collect()
 }

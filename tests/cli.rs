@@ -23,6 +23,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_file())
         .map(|path| {
             let name = path.file_name().unwrap().to_str().unwrap().to_owned();
             (name, fs::read(&path).unwrap())
@@ -51,7 +52,7 @@ fn a_recording_has_every_frame_and_says_what_each_shows() {
         .success();
     let out = here.path().join("recordings/one_drop");
     let files = contents(&out);
-    for name in ["sheet.png", "ledger.csv", "recording.ron", "one_drop.ron"] {
+    for name in ["sheet.png", "ledger.csv", "recording.ron", "scenario.ron"] {
         assert!(files.contains_key(name), "{name} is missing");
     }
     let manifest = manifest(&out);
@@ -88,7 +89,7 @@ fn the_scenario_in_a_recording_makes_the_same_recording_again() {
         .assert()
         .success();
     dyelapse(&here)
-        .args(["record", "a/one_drop.ron", "--out", "b"])
+        .args(["record", "a/scenario.ron", "--out", "b"])
         .args(few)
         .assert()
         .success();
@@ -145,23 +146,19 @@ fn another_seed_gives_another_cloth() {
     assert!(frame("8") != frame("9"));
 }
 
+const SHORT: [&str; 6] = ["record", "one_drop", "--steps", "2", "--frames", "1"];
+
 #[test]
-fn a_folder_with_anything_in_it_is_refused_and_force_clears_only_recordings() {
+fn a_folder_with_anything_in_it_is_refused_and_force_clears_only_a_recording() {
     let here = folder();
     let out = here.path().join("out");
-    fs::create_dir(&out).unwrap();
-    for (name, text) in [
-        ("notes.txt", "mine"),
-        ("frame_00099.png", "old"),
-        ("sheet.png", "old"),
-    ] {
-        fs::write(out.join(name), text).unwrap();
-    }
-    let before = contents(&out);
-    let arguments = [
-        "record", "one_drop", "--steps", "2", "--frames", "1", "--out", "out",
+    let long = [
+        "record", "fig8a", "--steps", "9", "--frames", "4", "--fields", "--out", "out",
     ];
-    let (code, text) = said(dyelapse(&here).args(arguments));
+    dyelapse(&here).args(long).assert().success();
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    let before = contents(&out);
+    let (code, text) = said(dyelapse(&here).args(SHORT).args(["--out", "out"]));
     assert_eq!(code, 2);
     assert!(
         text.contains("not empty") && text.contains("--force"),
@@ -170,14 +167,105 @@ fn a_folder_with_anything_in_it_is_refused_and_force_clears_only_recordings() {
     assert!(contents(&out) == before);
 
     dyelapse(&here)
-        .args(arguments)
-        .arg("--force")
+        .args(SHORT)
+        .args(["--out", "out", "--force"])
         .assert()
         .success();
-    let after = contents(&out);
-    assert_eq!(after["notes.txt"], b"mine");
-    assert!(!after.contains_key("frame_00099.png"));
-    assert!(after["sheet.png"] != b"old");
+    let files = contents(&out);
+    let names: Vec<&str> = files.keys().map(String::as_str).collect();
+    assert_eq!(
+        names,
+        [
+            "frame_00000.png",
+            "ledger.csv",
+            "notes.txt",
+            "recording.ron",
+            "scenario.ron",
+            "sheet.png"
+        ]
+    );
+    assert_eq!(files["notes.txt"], b"mine");
+}
+
+#[test]
+fn force_never_touches_what_no_recording_made() {
+    let here = folder();
+    let forced = |arguments: &[&str]| {
+        let before = contents(here.path());
+        let (code, text) = said(dyelapse(&here).args(arguments).arg("--force"));
+        assert_eq!(code, 2, "{arguments:?}: {text}");
+        assert!(contents(here.path()) == before, "{arguments:?}");
+        text
+    };
+    // A file that only has the name of one of a recording.
+    fs::write(here.path().join("sheet.png"), "mine").unwrap();
+    let text = forced(&["record", "one_drop", "--out", "."]);
+    assert!(text.contains("sheet.png is in the way"), "{text}");
+    fs::remove_file(here.path().join("sheet.png")).unwrap();
+    // The scenario's own folder, and its own picture.
+    image::GrayImage::new(20, 10)
+        .save(here.path().join("paste.png"))
+        .unwrap();
+    let scenario = "(title: \"own\", cloth: (size: (Cells(20), Cells(10))), supply: [],
+        resist: Image(file: \"paste.png\"), process: (duration: Steps(2)))";
+    fs::write(here.path().join("own.ron"), scenario).unwrap();
+    let text = forced(&["record", "own.ron", "--out", "."]);
+    assert!(text.contains("the scenario lies in"), "{text}");
+    // A picture of that name which is not the scenario's copy.
+    fs::create_dir(here.path().join("out")).unwrap();
+    fs::write(here.path().join("out/paste.png"), "mine").unwrap();
+    let (code, text) = said(dyelapse(&here).args(["record", "own.ron", "--out", "out", "--force"]));
+    assert_eq!(code, 2, "{text}");
+    assert_eq!(
+        fs::read(here.path().join("out/paste.png")).unwrap(),
+        b"mine"
+    );
+}
+
+#[test]
+fn a_scenario_is_kept_with_its_pictures_and_runs_again_from_there() {
+    let here = folder();
+    fs::create_dir(here.path().join("patterns")).unwrap();
+    let picture = image::GrayImage::from_fn(20, 10, |x, _| image::Luma([10 * x as u8]));
+    picture.save(here.path().join("patterns/ramp.png")).unwrap();
+    let scenario = "(title: \"ramp\", cloth: (size: (Cells(20), Cells(10))),
+        supply: [Hold(shape: Image(file: \"patterns/ramp.png\"))],
+        process: (duration: Steps(9)))";
+    // A byte order mark, as some editors write it.
+    fs::write(here.path().join("ramp.ron"), format!("\u{feff}{scenario}")).unwrap();
+    dyelapse(&here)
+        .args(["record", "ramp.ron", "--out", "a"])
+        .assert()
+        .success();
+    dyelapse(&here)
+        .args(["record", "a/scenario.ron", "--out", "b"])
+        .assert()
+        .success();
+    // And over an older recording of itself.
+    dyelapse(&here)
+        .args(["record", "ramp.ron", "--out", "a", "--force"])
+        .assert()
+        .success();
+    let picture =
+        |folder: &str| fs::read(here.path().join(folder).join("patterns/ramp.png")).unwrap();
+    assert!(picture("a") == picture("b"));
+    let frame = |folder: &str| fs::read(here.path().join(folder).join("frame_00009.png")).unwrap();
+    assert!(frame("a") == frame("b"));
+}
+
+#[test]
+fn every_broken_scenario_ends_with_2() {
+    for entry in fs::read_dir("tests/broken").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "ron") {
+            let (code, text) = said(
+                Command::new(env!("CARGO_BIN_EXE_dyelapse"))
+                    .arg("check")
+                    .arg(&path),
+            );
+            assert_eq!(code, 2, "{}: {text}", path.display());
+        }
+    }
 }
 
 #[test]
@@ -223,6 +311,12 @@ fn bad_input_is_told_on_one_place_ends_with_2_and_writes_nothing() {
         assert_eq!(code, 2, "{arguments:?}: {text}");
         assert!(text.contains(expected), "{arguments:?}: {text}");
         assert!(!text.contains("panicked"), "{text}");
+        // One message and no other.
+        assert_eq!(
+            text.matches("dyelapse: ").count() + text.matches("error: ").count(),
+            1,
+            "{text}"
+        );
     }
     assert_eq!(fs::read_dir(here.path()).unwrap().count(), before);
 }

@@ -60,6 +60,9 @@ pub struct Cloth {
     pub capacity_bound: Vec<f32>,
 }
 
+/// A cell with less room than this holds no liquid at all: its inverse must still be a number.
+const SHUT: f64 = 1e-9;
+
 /// What a cloth is assembled of; see the fields of [`Cloth`].
 #[derive(Debug, Clone)]
 pub struct Parts {
@@ -127,7 +130,8 @@ impl Cloth {
             capacity_bound: Vec::new(),
         };
         cloth.capacity_free = cloth.field(|layer, y, x| {
-            cloth.porosity(layer, y, x) * (1.0 - cloth.volume_ratio(layer, y, x))
+            let capacity = cloth.porosity(layer, y, x) * (1.0 - cloth.volume_ratio(layer, y, x));
+            if capacity < SHUT { 0.0 } else { capacity }
         });
         cloth.capacity_bound = cloth.field(|layer, y, x| match cloth.yarn(layer, y, x) {
             Some(yarn) => 1.0 - yarn.porosity,

@@ -76,14 +76,15 @@ impl Weave {
                     .take(8)
                     .map(|s| s.to_string())
                     .collect();
-                Err(at.field("counter").problem(if some.is_empty() {
-                    format!("no satin has {shafts} shafts; 5, 7, 8, 9, 10 or 12 do")
-                } else {
-                    format!(
-                        "a satin of {shafts} shafts can move by {}, but this says {counter}",
-                        some.join(", ")
-                    )
-                }))
+                if some.is_empty() {
+                    return Err(at.field("shafts").problem(format!(
+                        "no satin has {shafts} shafts; 5 and any number from 7 on do"
+                    )));
+                }
+                Err(at.field("counter").problem(format!(
+                    "a satin of {shafts} shafts can move by {}, but this says {counter}",
+                    some.join(", ")
+                )))
             }
             Weave::Matrix(picks) => check_matrix(picks, &at.field("Matrix")),
         }

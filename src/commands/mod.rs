@@ -45,7 +45,12 @@ fn print(text: &[u8]) -> ExitCode {
     }
 }
 
-/// Says what is wrong on standard error. Nobody is left to tell if that fails.
+/// Says something on standard error. Nobody is left to tell if that fails.
+fn say(what: &impl Display) {
+    let _ = writeln!(io::stderr(), "{what}");
+}
+
+/// Says what is wrong.
 fn complain(what: &impl Display) {
-    let _ = writeln!(io::stderr(), "dyelapse: {what}");
+    say(&format!("dyelapse: {what}"));
 }

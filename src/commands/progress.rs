@@ -1,9 +1,11 @@
 //! How far a recording has come: a bar on a terminal, plain lines elsewhere.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+
+use super::say;
 
 /// Shows progress in steps.
 pub struct Progress {
@@ -78,32 +80,10 @@ impl Progress {
         }
     }
 
-    /// Ends, with a last word.
-    pub fn end(self, step: u64, word: &str) {
-        match self.shown {
-            Shown::Nothing => {}
-            Shown::Bar(bar) => {
-                bar.set_position(step);
-                bar.finish_and_clear();
-                say(word);
-            }
-            Shown::Lines => say(word),
-        }
-    }
-
-    /// Ends without a word; the bar is wiped away.
-    pub fn give_up(self) {
+    /// Ends; a bar is wiped away.
+    pub fn end(self) {
         if let Shown::Bar(bar) = self.shown {
             bar.finish_and_clear();
         }
     }
-
-    /// Time since it began.
-    pub fn elapsed(&self) -> Duration {
-        self.began.elapsed()
-    }
-}
-
-fn say(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
 }

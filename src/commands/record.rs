@@ -3,9 +3,10 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use super::progress::Progress;
-use super::{BAD_INPUT, FAILED, INTERRUPTED, complain};
+use super::{BAD_INPUT, FAILED, INTERRUPTED, complain, say};
 use crate::cli::Record;
 use dyelapse::record::{Options, default_folder, record};
 use dyelapse::scenario::Experiment;
@@ -39,25 +40,35 @@ pub fn run(arguments: &Record) -> ExitCode {
     let steps = arguments
         .steps
         .unwrap_or_else(|| experiment.scenario.process.steps());
-    let mut progress = Progress::new(&experiment.scenario.title, steps, arguments.quiet);
+    let began = Instant::now();
+    // Begun by the first step: what is refused before is told in one message and no other.
+    let mut progress = None;
     let recorded = record(&experiment, &options, |step| {
-        progress.at(step);
+        let title = &experiment.scenario.title;
+        progress
+            .get_or_insert_with(|| Progress::new(title, steps, arguments.quiet))
+            .at(step);
         !interrupted.load(Ordering::Relaxed)
     });
+    if let Some(progress) = progress {
+        progress.end();
+    }
     match recorded {
         Ok(recording) => {
-            let seconds = progress.elapsed().as_secs_f64();
+            let seconds = began.elapsed().as_secs_f64();
             let (nx, ny) = experiment.scenario.cloth.cells();
             let updates = recording.steps as f64 * (2 * nx * ny) as f64 / seconds.max(1e-9);
             let ended = if recording.complete { "" } else { "stopped; " };
-            let word = format!(
-                "{ended}{} frames in {} ({} steps in {seconds:.2} s, {:.2} billion cell updates a second)",
-                recording.frames,
-                recording.folder.display(),
-                recording.steps,
-                updates / 1e9
-            );
-            progress.end(recording.steps, &word);
+            if !arguments.quiet {
+                say(&format!(
+                    "{ended}{} frames in {} ({} steps in {seconds:.2} s, \
+                     {:.2} billion cell updates a second)",
+                    recording.frames,
+                    recording.folder.display(),
+                    recording.steps,
+                    updates / 1e9
+                ));
+            }
             if recording.complete {
                 ExitCode::SUCCESS
             } else {
@@ -65,7 +76,6 @@ pub fn run(arguments: &Record) -> ExitCode {
             }
         }
         Err(why) => {
-            progress.give_up();
             complain(&why);
             ExitCode::from(if why.is_bad_input() {
                 BAD_INPUT

@@ -64,6 +64,15 @@ impl FreeDye {
     }
 }
 
+impl FreeDye {
+    /// Adds to the concentration of a cell; returns by how much it grew, to be booked in the ledger.
+    pub fn grow(&mut self, i: usize, change: f32) -> f64 {
+        let before = f64::from(self.concentration[i]) + f64::from(self.carry[i]);
+        (self.concentration[i], self.carry[i]) = add(self.concentration[i], self.carry[i], change);
+        f64::from(self.concentration[i]) + f64::from(self.carry[i]) - before
+    }
+}
+
 /// What the faces of the cloth let through in one (split) step: G = Δt/Δd² · D_face · min(V_u),
 /// and what the explicit solver needs to be stable.
 #[derive(Resource, Debug, Clone)]

@@ -84,7 +84,6 @@ pub(super) fn rule(pattern: &Pattern, canvas: &Canvas) -> Shape {
             let begin = across.min(0.0) * width + down.min(0.0) * height;
             Box::new(move |x, y| ((x * across + y * down - begin) / reach).clamp(0.0, 1.0) as f32)
         }
-        Pattern::Everywhere => Box::new(|_, _| 1.0),
         _ => Box::new(|_, _| 0.0),
     }
 }

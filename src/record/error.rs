@@ -49,6 +49,20 @@ pub enum RecordError {
          recording in it", .0.display()
     )]
     NotEmpty(PathBuf),
+    /// With `force`, a file that no recording made would have to be replaced.
+    #[error(
+        "{} is in the way, and no recording made it: move it, or choose another folder with --out",
+        .0.display()
+    )]
+    Foreign(PathBuf),
+    /// The scenario lies in the folder that is to be cleared for it.
+    #[error(
+        "the scenario lies in {} itself: choose another folder with --out", .0.display()
+    )]
+    OwnFolder(PathBuf),
+    /// A picture of the scenario has the name of a file that a recording makes.
+    #[error("the picture {0} has the name of a file that a recording makes: give it another name")]
+    TakenName(String),
     /// The folder is a file.
     #[error("{} is a file, not a folder", .0.display())]
     NotAFolder(PathBuf),

@@ -12,7 +12,7 @@ use zip::{CompressionMethod, DateTime};
 use super::recorder::Dyed;
 use crate::cloth::{Cloth, Grid, Layer};
 use crate::diffusion::Faces;
-use crate::scenario::Experiment;
+use crate::scenario::{Experiment, Isotherm};
 
 /// A NumPy archive being written.
 struct Archive<W: Write + Seek> {
@@ -73,6 +73,7 @@ fn cells(grid: Grid, less_y: usize, less_x: usize) -> impl Iterator<Item = (Laye
 pub(super) fn write_cloth(
     cloth: &Cloth,
     experiment: &Experiment,
+    splits: u32,
     file: &mut BufWriter<File>,
 ) -> io::Result<()> {
     let scenario = &experiment.scenario;
@@ -110,6 +111,17 @@ pub(super) fn write_cloth(
     archive.scalar("dt_h", scenario.process.step_h)?;
     archive.scalar("d0_mm2_h", scenario.dye.diffusivity.in_water())?;
     archive.scalar("phi0", scenario.dye.equilibrium)?;
+    let (isotherm, k, b) = match scenario.adsorption.map(|adsorption| adsorption.isotherm) {
+        None => (0_i64, 0.0, 0.0),
+        Some(Isotherm::Partition { k }) => (1, k, 1.0),
+        Some(Isotherm::Freundlich { k, b }) => (2, k, b),
+        Some(Isotherm::Langmuir { kl }) => (3, kl, 0.0),
+        Some(Isotherm::Saturating { speed, most }) => (4, speed, most),
+    };
+    archive.scalar("isotherm", isotherm)?;
+    archive.scalar("isotherm_k", k)?;
+    archive.scalar("isotherm_b", b)?;
+    archive.scalar("splits", i64::from(splits))?;
     let rate = scenario
         .adsorption
         .map_or(0.0, |adsorption| adsorption.rate);
@@ -129,18 +141,19 @@ pub(super) struct State {
 
 impl State {
     /// Takes the fields as they are at this moment.
-    pub fn take(dyed: &Dyed, step: u64, hours: f64) -> Self {
+    pub fn take(dyed: &mut Dyed, step: u64, hours: f64) -> Self {
         let cloth = &dyed.cloth;
         let amounts = |concentration: &[f32]| -> Vec<f32> {
             let both = concentration.iter().zip(&cloth.capacity_free);
             both.map(|(c, v_u)| c * v_u).collect()
         };
         let cells = cloth.grid.len();
+        let held = dyed.supplies.held(step, cells);
         State {
             grid: cloth.grid,
             free: amounts(&dyed.free.concentration),
             bound: (0..cells).map(|i| dyed.bound.at(i)).collect(),
-            held: amounts(&dyed.supplies.held(step, cells)),
+            held: amounts(&held),
             step,
             hours,
         }

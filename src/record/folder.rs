@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::RecordError;
+use super::manifest::{MANIFEST, Manifest};
 
 /// The folder of a recording.
 #[derive(Debug, Clone)]
@@ -16,9 +17,14 @@ pub(super) struct Folder {
 const UNFINISHED: &str = ".part";
 
 impl Folder {
-    /// Makes the folder, or takes an empty one. With `force`, one that holds a recording is cleared
-    /// of it; files that no recording has are never touched.
-    pub fn claim(path: &Path, force: bool) -> Result<Self, RecordError> {
+    /// Makes the folder, or takes an empty one. With `force`, a recording in it is cleared away;
+    /// files that no recording has made are never touched, and where the new recording would
+    /// need the name of one, the folder is refused. `pictures` are the scenario's, by their paths.
+    pub(super) fn claim(
+        path: &Path,
+        force: bool,
+        pictures: &[String],
+    ) -> Result<Self, RecordError> {
         let failed = |why| RecordError::Folder {
             path: path.into(),
             why,
@@ -26,51 +32,96 @@ impl Folder {
         if path.exists() && !path.is_dir() {
             return Err(RecordError::NotAFolder(path.into()));
         }
+        let folder = Folder { path: path.into() };
+        if let Some(picture) = pictures.iter().find(|name| is_of_a_recording(name)) {
+            return Err(RecordError::TakenName(picture.into()));
+        }
         fs::create_dir_all(path).map_err(failed)?;
         let entries: Vec<_> = fs::read_dir(path)
             .and_then(Iterator::collect::<io::Result<_>>)
             .map_err(failed)?;
-        if !entries.is_empty() && !force {
+        if entries.is_empty() {
+            return Ok(folder);
+        }
+        if !force {
             return Err(RecordError::NotEmpty(path.into()));
         }
-        for entry in entries {
-            let name = entry.file_name();
-            if name.to_str().is_some_and(is_of_a_recording) && entry.path().is_file() {
-                fs::remove_file(entry.path()).map_err(failed)?;
+        let old = folder.old_manifest();
+        let named: Vec<PathBuf> = entries
+            .iter()
+            .filter(|entry| entry.file_name().to_str().is_some_and(is_of_a_recording))
+            .map(fs::DirEntry::path)
+            .collect();
+        let old_pictures = old.as_ref().map_or(&[][..], |old| &old.pictures);
+        let foreign_picture = pictures
+            .iter()
+            .filter(|name| !old_pictures.contains(name))
+            .map(|name| folder.file(name))
+            .find(|file| file.exists());
+        let foreign = match &old {
+            None => named.first().cloned().or(foreign_picture),
+            Some(_) => foreign_picture,
+        };
+        if let Some(file) = foreign {
+            return Err(RecordError::Foreign(file));
+        }
+        let old_pictures = old_pictures.iter().map(|name| folder.file(name));
+        for file in named.into_iter().chain(old_pictures) {
+            if file.is_file() {
+                fs::remove_file(&file).map_err(failed)?;
             }
         }
-        Ok(Folder { path: path.into() })
+        Ok(folder)
+    }
+
+    fn old_manifest(&self) -> Option<Manifest> {
+        let text = fs::read_to_string(self.file(MANIFEST)).ok()?;
+        ron::from_str(&text).ok()
     }
 
     /// The path of a file in the folder.
-    pub fn file(&self, name: &str) -> PathBuf {
+    pub(super) fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 
     /// Writes a file: under another name first, and under its own when it is whole.
-    pub fn write(
+    pub(super) fn write(
         &self,
         name: &str,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), RecordError> {
         let path = self.file(name);
-        let unfinished = self.file(&format!(".{name}{UNFINISHED}"));
-        let written = File::create(&unfinished).and_then(|file| {
-            let mut file = BufWriter::with_capacity(1 << 18, file);
-            fill(&mut file)?;
-            file.flush()?;
-            drop(file);
-            fs::rename(&unfinished, &path)
-        });
+        let unfinished = unfinished(&path);
+        let beside = path.parent().map_or(Ok(()), fs::create_dir_all);
+        let written = beside
+            .and_then(|()| File::create(&unfinished))
+            .and_then(|file| {
+                let mut file = BufWriter::with_capacity(1 << 18, file);
+                fill(&mut file)?;
+                file.flush()?;
+                drop(file);
+                fs::rename(&unfinished, &path)
+            });
         written.map_err(|why| {
             // Best effort: what matters is the first error.
             let _ = fs::remove_file(&unfinished);
             RecordError::Write { path, why }
         })
     }
+
+    /// Writes a file of text.
+    pub(super) fn write_text(&self, name: &str, text: &str) -> Result<(), RecordError> {
+        self.write(name, |file| file.write_all(text.as_bytes()))
+    }
 }
 
-/// Whether a recording may have made a file of this name.
+/// The name of a file while it is being written.
+pub(super) fn unfinished(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}{UNFINISHED}"))
+}
+
+/// Whether a recording makes files of this name.
 fn is_of_a_recording(name: &str) -> bool {
     let numbered = |prefix: &str, ending: &str| {
         name.strip_prefix(prefix)
@@ -79,17 +130,21 @@ fn is_of_a_recording(name: &str) -> bool {
                 number.len() >= 5 && number.bytes().all(|byte| byte.is_ascii_digit())
             })
     };
-    [
-        "recording.ron",
+    let single = [
+        MANIFEST,
+        "scenario.ron",
         "ledger.csv",
         "sheet.png",
         "cloth.npz",
         "video.mp4",
-    ]
-    .contains(&name)
+    ];
+    let whole = name
+        .strip_prefix('.')
+        .and_then(|name| name.strip_suffix(UNFINISHED));
+    single.contains(&name)
         || numbered("frame_", ".png")
         || numbered("state_", ".npz")
-        || (name.starts_with('.') && name.ends_with(UNFINISHED))
+        || whole.is_some_and(is_of_a_recording)
 }
 
 #[cfg(test)]
@@ -97,12 +152,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_files_of_a_recording_are_ever_cleared() {
+    fn only_names_of_a_recording_are_its_own() {
         for name in [
             "frame_00000.png",
             "frame_123456.png",
             "state_00010.npz",
             "sheet.png",
+            ".frame_00001.png.part",
         ] {
             assert!(is_of_a_recording(name), "{name}");
         }
@@ -112,6 +168,7 @@ mod tests {
             "notes.txt",
             "cloth.ron",
             "my_sheet.png",
+            ".notes.txt.part",
         ] {
             assert!(!is_of_a_recording(name), "{name}");
         }

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::ledger::Ledger;
 
+/// The file that a [`Manifest`] is kept in.
+pub(super) const MANIFEST: &str = "recording.ron";
+
 /// The contents of `recording.ron`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -15,6 +18,8 @@ pub struct Manifest {
     pub title: String,
     /// The scenario file beside this one.
     pub scenario: String,
+    /// The scenario's pictures that were copied with it.
+    pub pictures: Vec<String>,
     /// SHA-256 of the scenario file.
     pub scenario_sha256: String,
     /// Seed of everything random.

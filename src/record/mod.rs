@@ -19,10 +19,11 @@ pub use error::RecordError;
 pub use manifest::{Frame, Manifest};
 pub use plan::{Plan, Stop};
 pub use recorder::{RecordPlugin, Recorder};
+pub(crate) use sheet::LARGEST_TILE;
 pub use video::ffmpeg_is_there;
 
 use crate::memory::{self, Use};
-use crate::scenario::{Experiment, LARGEST_SCALE};
+use crate::scenario::{Experiment, LARGEST_SCALE, Origin};
 use crate::schedule::advance_to;
 use crate::texture::Scale;
 use crate::{DyeingPlugins, look, prepare};
@@ -83,8 +84,12 @@ pub fn record(
     if options.video && !ffmpeg_is_there() {
         return Err(RecordError::NoFfmpeg);
     }
-    let folder = Folder::claim(&options.out, options.force)?;
-    let recorder = Recorder::start(experiment, folder, &plan, scale, fields)?;
+    if lies_in(experiment, &options.out) {
+        return Err(RecordError::OwnFolder(options.out.clone()));
+    }
+    let pictures = recorder::pictures_beside(experiment);
+    let folder = Folder::claim(&options.out, options.force, &pictures)?;
+    let recorder = Recorder::start(experiment, folder.clone(), &plan, scale, fields)?;
 
     let mut app = bevy::app::App::new();
     app.add_plugins((DyeingPlugins, RecordPlugin))
@@ -111,7 +116,7 @@ pub fn record(
     };
     let manifest = recorder.finish(complete)?;
     if options.video {
-        video::make(&options.out, &manifest)?;
+        video::make(&folder, &manifest)?;
     }
     Ok(Recording {
         folder: options.out.clone(),
@@ -119,6 +124,17 @@ pub fn record(
         steps,
         complete,
     })
+}
+
+/// Whether a scenario's file lies in a folder itself: clearing it would clear away the scenario.
+fn lies_in(experiment: &Experiment, folder: &Path) -> bool {
+    let Origin::File(file) = &experiment.origin else {
+        return false;
+    };
+    match (file.canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) => file.parent() == Some(&folder),
+        _ => false,
+    }
 }
 
 /// The default folder for a recording of an experiment.

@@ -61,15 +61,15 @@ impl Plan {
             let step = spread(u64::from(frame), u64::from(count), total);
             stop_at(&mut stops, step).frame = Some(frame);
         }
-        let named: Vec<u64> = scenario
-            .record
-            .sheet
+        let sheet = &scenario.record.sheet;
+        let named: Vec<u64> = sheet
             .iter()
             .map(|time| time.steps(scenario.process.step_h))
             .filter(|step| *step <= total)
             .collect();
         // A process cut short by `--steps` may end before most of the sheet's moments.
-        let moments = if named.len() > 1 {
+        let enough = named.len() > 1 || named.len() == sheet.len();
+        let moments = if enough && !named.is_empty() {
             named
         } else {
             let frames: Vec<u64> = stops.keys().copied().collect();

@@ -7,13 +7,13 @@ use bevy::prelude::*;
 use super::RecordError;
 use super::fields::{self, State};
 use super::folder::Folder;
-use super::manifest::{self, Frame, Manifest};
+use super::manifest::{self, Frame, MANIFEST, Manifest};
 use super::plan::{Plan, Stop};
 use super::sheet::Sheet;
 use super::writer::{self, Job, Writer};
 use crate::adsorption::BoundDye;
 use crate::cloth::Cloth;
-use crate::diffusion::FreeDye;
+use crate::diffusion::{Conductances, FreeDye};
 use crate::ledger::Ledger;
 use crate::scenario::units::rounded;
 use crate::scenario::{Experiment, Origin};
@@ -57,16 +57,12 @@ impl Recorder {
         fields: bool,
     ) -> Result<Self, RecordError> {
         let scenario = &experiment.scenario;
-        let file = format!("{}.ron", experiment.name);
-        folder.write(&file, |out| {
-            std::io::Write::write_all(out, experiment.text.as_bytes())
-        })?;
-        copy_pictures(experiment, &folder)?;
         let (nx, ny) = scenario.cloth.cells();
         let manifest = Manifest {
             dyelapse: env!("CARGO_PKG_VERSION").into(),
             title: scenario.title.clone(),
-            scenario: file,
+            scenario: "scenario.ron".into(),
+            pictures: pictures_beside(experiment),
             scenario_sha256: experiment.hash(),
             seed: scenario.seed,
             steps: plan.steps,
@@ -76,6 +72,10 @@ impl Recorder {
             complete: false,
             frames: Vec::new(),
         };
+        // First of all, so that whatever happens the folder is known to hold a recording.
+        folder.write_text(MANIFEST, &manifest.to_ron())?;
+        folder.write_text(&manifest.scenario, &experiment.text)?;
+        copy_pictures(experiment, &manifest.pictures, &folder)?;
         Ok(Recorder {
             writer: Writer::start(folder.clone()),
             folder,
@@ -125,39 +125,48 @@ impl Recorder {
         let kept = |frame: &&Frame| folder.file(&frame.file).exists();
         let frames = manifest.frames.iter().take_while(kept).count();
         manifest.frames.truncate(frames);
-        let text = |name: &str, text: &str| {
-            folder.write(name, |file| {
-                std::io::Write::write_all(file, text.as_bytes())
-            })
-        };
         let lines: String = ledger.split_inclusive('\n').take(1 + frames).collect();
-        let last = text("recording.ron", &manifest.to_ron())
-            .and_then(|()| text("ledger.csv", &lines))
+        let last = folder
+            .write_text(MANIFEST, &manifest.to_ron())
+            .and_then(|()| folder.write_text("ledger.csv", &lines))
             .and_then(|()| folder.write("sheet.png", |file| writer::encode(&sheet.draw(), file)));
         written.and(last)?;
         Ok(manifest)
     }
 }
 
-/// Copies the pictures of a scenario beside its copy, so that the copy runs as well. Pictures that
-/// lie outside the scenario's folder stay where they are.
-fn copy_pictures(experiment: &Experiment, folder: &Folder) -> Result<(), RecordError> {
+/// The pictures that are copied with a scenario, so that the copy runs as well: those that lie beside
+/// or below it. Others stay where they are.
+pub(super) fn pictures_beside(experiment: &Experiment) -> Vec<String> {
+    let is_below = |file: &&str| {
+        let mut parts = Path::new(file).components();
+        parts.all(|part| matches!(part, Component::Normal(_)))
+    };
+    match experiment.origin {
+        Origin::File(_) => experiment
+            .images
+            .files()
+            .filter(is_below)
+            .map(Into::into)
+            .collect(),
+        Origin::Bundled | Origin::Memory => Vec::new(),
+    }
+}
+
+fn copy_pictures(
+    experiment: &Experiment,
+    pictures: &[String],
+    folder: &Folder,
+) -> Result<(), RecordError> {
     let Origin::File(scenario) = &experiment.origin else {
         return Ok(());
     };
     let beside = scenario.parent().unwrap_or(Path::new(""));
-    for file in experiment.images.files() {
-        let is_plain = |part: Component| matches!(part, Component::Normal(_));
-        if !Path::new(file).components().all(is_plain) {
-            continue;
-        }
-        let to = folder.file(file);
-        let copied = match to.parent() {
-            Some(parent) => std::fs::create_dir_all(parent),
-            None => Ok(()),
-        }
-        .and_then(|()| std::fs::copy(beside.join(file), &to));
-        copied.map_err(|why| RecordError::Write { path: to, why })?;
+    for name in pictures {
+        folder.write(name, |to| {
+            let mut from = std::fs::File::open(beside.join(name))?;
+            std::io::copy(&mut from, to).map(|_| ())
+        })?;
     }
     Ok(())
 }
@@ -169,7 +178,8 @@ pub(super) struct Dyed<'w> {
     pub cloth: Res<'w, Cloth>,
     pub free: Res<'w, FreeDye>,
     pub bound: Res<'w, BoundDye>,
-    pub supplies: Res<'w, Supplies>,
+    pub conductances: Res<'w, Conductances>,
+    pub supplies: ResMut<'w, Supplies>,
 }
 
 fn keep(
@@ -177,7 +187,7 @@ fn keep(
     clock: Res<ProcessClock>,
     ledger: Res<Ledger>,
     picture: Res<Picture>,
-    dyed: Dyed,
+    mut dyed: Dyed,
 ) {
     let Some(stop) = recorder.expected.take() else {
         return;
@@ -198,11 +208,18 @@ fn keep(
     if recorder.fields {
         if recorder.manifest.frames.is_empty() {
             let written = recorder.folder.write("cloth.npz", |file| {
-                fields::write_cloth(&dyed.cloth, &dyed.experiment, file)
+                fields::write_cloth(
+                    &dyed.cloth,
+                    &dyed.experiment,
+                    dyed.conductances.splits,
+                    file,
+                )
             });
-            recorder.failed = written.err();
+            if let Err(why) = written {
+                recorder.failed.get_or_insert(why);
+            }
         }
-        let state = State::take(&dyed, clock.step, hours);
+        let state = State::take(&mut dyed, clock.step, hours);
         recorder.give(Job::State {
             name: format!("state_{frame:05}.npz"),
             state: Box::new(state),

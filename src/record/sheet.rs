@@ -1,15 +1,17 @@
 //! The contact sheet: the chosen moments side by side, each with its time.
 
-use ab_glyph::{FontRef, PxScale};
+use ab_glyph::{Font, FontRef, PxScale};
 use image::{Rgb, RgbImage, imageops};
 use imageproc::drawing::{draw_text_mut, text_size};
 
+use crate::scenario::units::rounded;
 use crate::texture::Picture;
 
-/// The widest a picture stands on the sheet, pixels.
-const WIDEST: usize = 800;
-/// The narrowest, so that its label fits.
-const NARROWEST: usize = 240;
+/// A picture on the sheet is made smaller until both sides are at most this, pixels.
+pub const LARGEST_TILE: u32 = 800;
+/// A tiny one is enlarged while both sides stay below this, and each has at least so much room, so
+/// that its label fits.
+const ROOM: u32 = 240;
 const MARGIN: u32 = 24;
 const PAPER: Rgb<u8> = Rgb([250, 249, 246]);
 const INK: Rgb<u8> = Rgb([38, 40, 46]);
@@ -34,16 +36,16 @@ impl Sheet {
         let Some(image) = RgbImage::from_raw(width, height, picture.rgb.clone()) else {
             return;
         };
-        let tile = if picture.width > WIDEST {
-            let height = (u64::from(height) * WIDEST as u64 / u64::from(width)).max(1) as u32;
-            let filter = imageops::FilterType::CatmullRom;
-            imageops::resize(&image, WIDEST as u32, height, filter)
-        } else if picture.width < NARROWEST {
-            let times = (NARROWEST as u32).div_ceil(width);
-            let filter = imageops::FilterType::Nearest;
-            imageops::resize(&image, width * times, height * times, filter)
+        let longest = width.max(height);
+        let scaled =
+            |side: u32| (u64::from(side) * u64::from(LARGEST_TILE) / u64::from(longest)).max(1);
+        let tile = if longest > LARGEST_TILE {
+            let (width, height) = (scaled(width) as u32, scaled(height) as u32);
+            imageops::resize(&image, width, height, imageops::FilterType::CatmullRom)
         } else {
-            image
+            let times = (ROOM / longest).max(1);
+            let (width, height) = (width * times, height * times);
+            imageops::resize(&image, width, height, imageops::FilterType::Nearest)
         };
         self.tiles.push((tile, label(step, hours)));
     }
@@ -54,6 +56,7 @@ impl Sheet {
             .tiles
             .first()
             .map_or((1, 1), |(tile, _)| tile.dimensions());
+        let width = width.max(ROOM);
         let columns = columns(self.tiles.len(), width, height);
         let rows = self.tiles.len().div_ceil(columns) as u32;
         let letters = (width / 24).clamp(14, 30);
@@ -79,16 +82,22 @@ impl Sheet {
     }
 }
 
-/// Writes a line of text, made smaller until it fits on the sheet.
+/// Writes a line of text, made smaller until it fits on the sheet. Letters that the font does not
+/// have are left out.
 fn write(sheet: &mut RgbImage, text: &str, x: u32, y: u32, letters: u32) {
     let Ok(font) = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT) else {
         return;
     };
+    let known = |c: &char| *c == ' ' || font.glyph_id(*c).0 != 0;
+    let spaced = text
+        .chars()
+        .map(|c| if c.is_whitespace() { ' ' } else { c });
+    let text: String = spaced.filter(known).collect();
     let room = sheet.width().saturating_sub(x + MARGIN);
-    let (wide, _) = text_size(PxScale::from(letters as f32), &font, text);
+    let (wide, _) = text_size(PxScale::from(letters as f32), &font, &text);
     let fit = (room as f32 / wide.max(1) as f32).min(1.0);
     let scale = PxScale::from((letters as f32 * fit).max(6.0));
-    draw_text_mut(sheet, INK, x as i32, y as i32, scale, &font, text);
+    draw_text_mut(sheet, INK, x as i32, y as i32, scale, &font, &text);
 }
 
 /// How many pictures to put in a row: a sheet a little wider than high, with few places left empty.
@@ -114,8 +123,7 @@ fn label(step: u64, hours: f64) -> String {
         }
         grouped.push(digit);
     }
-    let rounded = (hours * 1000.0).round() / 1000.0;
-    format!("t = {grouped}    {rounded} h")
+    format!("t = {grouped}    {} h", rounded(hours, 6))
 }
 
 #[cfg(test)]
@@ -126,7 +134,22 @@ mod tests {
     fn labels_group_their_thousands() {
         assert_eq!(label(0, 0.0), "t = 0    0 h");
         assert_eq!(label(12_500, 6.25), "t = 12,500    6.25 h");
+        assert_eq!(label(3, 0.0015), "t = 3    0.0015 h");
         assert_eq!(label(1_234_567, 617.2835), "t = 1,234,567    617.284 h");
+    }
+
+    #[test]
+    fn a_sheet_of_any_cloth_stays_small() {
+        for (width, height) in [(1, 1), (1, 5000), (5000, 1), (20, 4000), (3200, 2400)] {
+            let mut sheet = Sheet::new("any");
+            let rgb = vec![200; width * height * 3];
+            let picture = Picture { width, height, rgb };
+            for step in 0..8 {
+                sheet.add(&picture, step, 0.0);
+            }
+            let drawn = sheet.draw();
+            assert!(drawn.width * drawn.height < 8_000_000, "{width}×{height}");
+        }
     }
 
     #[test]

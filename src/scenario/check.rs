@@ -71,19 +71,6 @@ impl Checker {
         Err(self.problem(format!("{least} to {most} is allowed, but this is {value}")))
     }
 
-    /// Demands that `value` is more than `least` and at most `most`.
-    ///
-    /// # Errors
-    /// A [`Problem`] with the value and the range.
-    pub fn above(&self, value: f64, least: f64, most: f64) -> Result<(), Problem> {
-        if value > least && value <= most {
-            return Ok(());
-        }
-        Err(self.problem(format!(
-            "more than {least} and at most {most} is allowed, but this is {value}"
-        )))
-    }
-
     /// Demands that a pair is a range (least, most) within `range`.
     ///
     /// # Errors

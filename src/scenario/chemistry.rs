@@ -59,7 +59,7 @@ impl DyeSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Adsorption", deny_unknown_fields)]
 pub struct AdsorptionSpec {
-    /// D_ab as a share of D₀ (0.01 in paper D).
+    /// D_ab as a share of D₀ (0.01 in paper D). `Saturating` has a speed of its own instead.
     #[serde(default = "default_rate")]
     pub rate: f64,
     /// How much a fibre can bind at a given amount of free dye.
@@ -93,6 +93,14 @@ pub enum Isotherm {
         /// K_L, the equilibrium constant: the larger, the sooner fibre is full.
         kl: f64,
     },
+    /// No isotherm but a speed that falls as fibre fills (paper B): each step binds
+    /// α_d·(a_d − A)·φ.
+    Saturating {
+        /// α_d, 0 to 1.
+        speed: f64,
+        /// a_d, the most that fibre binds, 0 to 1.
+        most: f64,
+    },
 }
 
 impl Default for Isotherm {
@@ -112,6 +120,10 @@ impl AdsorptionSpec {
                 at.field("b").within(b, 0.1..=1.0)
             }
             Isotherm::Langmuir { kl } => at.field("kl").within(kl, 0.0..=1e6),
+            Isotherm::Saturating { speed, most } => {
+                at.field("speed").within(speed, 0.0..=1.0)?;
+                at.field("most").within(most, 0.0..=1.0)
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::check::Problem;
-use super::locate::locate;
+use super::locate::{self, locate};
 
 /// Why a scenario cannot be run.
 #[derive(Debug, Error)]
@@ -96,6 +96,10 @@ impl SourceError {
 
     /// What RON could not make a scenario of.
     pub(super) fn from_ron(name: &str, source: &str, error: &ron::error::SpannedError) -> Self {
+        // Brackets that do not fit together make the parser stumble far from where they are.
+        if let Some((at, what)) = locate::unbalanced(source) {
+            return SourceError::between(name, source, at, at + 1, what);
+        }
         let begin = offset(source, error.span.start);
         let end = offset(source, error.span.end);
         let (begin, end) = token_near(source, begin, end, &error.code);
@@ -211,7 +215,7 @@ fn describe(code: &ron::Error) -> String {
             outer,
         } => format!(
             "`{found}` is not a {}{}\nexpected one of: {}",
-            outer.as_deref().unwrap_or("choice"),
+            outer.as_deref().unwrap_or("choice").to_lowercase(),
             did_you_mean(nearest(found, expected.iter().copied())),
             expected.join(", ")
         ),
@@ -225,7 +229,21 @@ fn describe(code: &ron::Error) -> String {
             format!("expected {expected}, but found {found}")
         }
         E::ExceededRecursionLimit => "this is nested too deeply".into(),
-        E::IntegerOutOfBounds => "this whole number is too small or too large here".into(),
+        E::IntegerOutOfBounds => {
+            "a whole number of 0 or more is needed here (and this one may be too large)".into()
+        }
+        E::SuggestRawIdentifier(_) | E::InvalidIdentifier(_) => {
+            "a name is needed here; a length has its unit around it, as in `Mm(1.5)` or `Cells(30)`, \
+             and so has a time, as in `Hours(2.5)`"
+                .into()
+        }
+        E::ExpectedStructLikeEnd => {
+            "expected `)`; decimal numbers are written with a point, as in 1.5, and only where parts \
+             make sense"
+                .into()
+        }
+        E::ExpectedMapColon => "expected `:` after the name of the field".into(),
+        E::ExpectedArray => "a list stands in square brackets: `[ … , … ]`".into(),
         E::ExpectedInteger => "expected a whole number".into(),
         E::ExpectedFloat => "expected a number".into(),
         E::ExpectedString => "expected text in quotes".into(),

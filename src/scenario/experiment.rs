@@ -89,6 +89,11 @@ impl Experiment {
     /// # Errors
     /// A [`ScenarioError`] that names line and column.
     pub fn parse(name: &str, origin: Origin, text: String) -> Result<Self, ScenarioError> {
+        // Some editors begin a file with a byte order mark.
+        let text = match text.strip_prefix('\u{feff}') {
+            Some(rest) => rest.to_owned(),
+            None => text,
+        };
         let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
         let source = |error| ScenarioError::Source(Box::new(error));
         let scenario: Scenario = options

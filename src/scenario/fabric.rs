@@ -9,6 +9,9 @@ use crate::cloth::Weave;
 /// The most cells a cloth may have along one side.
 pub const LONGEST_SIDE: usize = 1 << 20;
 
+/// The least porosity: yarn with fewer pores than this takes up no dye.
+const LEAST_POROSITY: f64 = 0.001;
+
 /// The cloth (paper D §4.1).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Cloth", deny_unknown_fields)]
@@ -134,7 +137,8 @@ impl ClothSpec {
         self.warp.check(&at.field("warp"), self.cell_mm)?;
         self.weft().check(&at.field("weft"), self.cell_mm)?;
         if let Some(porosity) = self.gap_porosity {
-            at.field("gap_porosity").above(porosity, 0.0, 1.0)?;
+            at.field("gap_porosity")
+                .within(porosity, LEAST_POROSITY..=1.0)?;
         }
         self.paths.check(&at.field("paths"))
     }
@@ -145,7 +149,8 @@ impl YarnSpec {
         let widest = LONGEST_SIDE as f64;
         self.width.check(&at.field("width"), cell_mm, 1.0, widest)?;
         self.gap.check(&at.field("gap"), cell_mm, 0.0, widest)?;
-        at.field("porosity").above(self.porosity, 0.0, 1.0)?;
+        at.field("porosity")
+            .within(self.porosity, LEAST_POROSITY..=1.0)?;
         at.field("vary_porosity")
             .range(self.vary_porosity, 0.01..=1.0)?;
         at.field("twist").within(self.twist, 0.0..=1.0)?;

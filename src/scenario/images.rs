@@ -6,6 +6,7 @@ use std::path::Path;
 use image::{ImageReader, Limits};
 
 use super::check::{Checker, Problem};
+use crate::memory;
 use crate::pattern::{Fit, Pattern, Raster};
 
 /// Loaded pictures by the name that the scenario gives them.
@@ -14,8 +15,8 @@ pub struct Images {
     rasters: BTreeMap<String, Raster>,
 }
 
-/// The most memory that decoding one picture may take, bytes.
-const DECODING_LIMIT: u64 = 4 << 30;
+/// Bytes for one pixel of a picture while it is loaded: decoded, in grey with alpha, and kept.
+const BYTES_PER_PIXEL: u64 = 8 + 8 + 4;
 
 impl Images {
     /// The picture of this name, if it was loaded.
@@ -49,6 +50,13 @@ impl Images {
                     .problem(format!("the picture {}: {why}", path.display()))
             };
             let (width, height) = dimensions(&path).map_err(named)?;
+            let needed = BYTES_PER_PIXEL * width as u64 * height as u64;
+            if needed > memory::free() {
+                return Err(named(format!(
+                    "its {width}×{height} pixels need {} MB of memory, more than is free",
+                    needed / 1_000_000
+                )));
+            }
             let (nx, ny) = cloth;
             if *fit == Fit::Exact && (width, height) != cloth {
                 return Err(named(format!(
@@ -74,7 +82,7 @@ fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>,
         .and_then(ImageReader::with_guessed_format)
         .map_err(|why| format!("it cannot be read: {why}"))?;
     let mut limits = Limits::default();
-    limits.max_alloc = Some(DECODING_LIMIT);
+    limits.max_alloc = Some(memory::free());
     reader.limits(limits);
     Ok(reader)
 }
@@ -84,7 +92,7 @@ fn dimensions(path: &Path) -> Result<(usize, usize), String> {
     Ok((width as usize, height as usize))
 }
 
-/// Brightness from 0 to 1; what is transparent counts as black.
+/// Brightness from 0 to 1; what is transparent counts as black, so that only what is drawn counts.
 fn decode(path: &Path) -> Result<Raster, String> {
     let image = reader(path)?.decode().map_err(not_a_picture)?;
     let image = image.to_luma_alpha32f();
@@ -99,5 +107,10 @@ fn decode(path: &Path) -> Result<Raster, String> {
 }
 
 fn not_a_picture(why: image::ImageError) -> String {
-    format!("it is not a whole PNG or JPEG: {why}")
+    match why {
+        image::ImageError::Unsupported(_) => {
+            format!("pictures are PNG or JPEG, and this is neither: {why}")
+        }
+        _ => format!("it is not a whole PNG or JPEG: {why}"),
+    }
 }

@@ -29,6 +29,46 @@ pub(super) fn locate(text: &str, path: &str) -> Option<Found> {
     Some(found)
 }
 
+/// Finds the first bracket that has no partner, and says what it lacks.
+pub(super) fn unbalanced(text: &str) -> Option<(usize, String)> {
+    let mut scanner = Scanner { text, at: 0 };
+    let mut open: Vec<(usize, char)> = Vec::new();
+    loop {
+        scanner.skip_blanks();
+        let Some(c) = scanner.peek() else { break };
+        let at = scanner.at;
+        match c {
+            '(' | '[' | '{' => open.push((at, c)),
+            ')' | ']' | '}' => match open.pop() {
+                Some((_, '(')) if c == ')' => {}
+                Some((_, '[')) if c == ']' => {}
+                Some((_, '{')) if c == '}' => {}
+                Some((opened, other)) => {
+                    let line = text[..at].matches('\n').count() + 1;
+                    return Some((
+                        opened,
+                        format!("this `{other}` is not closed: `{c}` comes first, in line {line}"),
+                    ));
+                }
+                None => return Some((at, format!("this `{c}` closes nothing"))),
+            },
+            _ if scanner.at_string() => {
+                scanner.skip_string();
+                continue;
+            }
+            // A whole word, so that the `r` in it is not taken for the beginning of a raw string.
+            _ if c.is_alphanumeric() || c == '_' => {
+                scanner.word();
+                continue;
+            }
+            _ => {}
+        }
+        scanner.at += c.len_utf8();
+    }
+    open.pop()
+        .map(|(at, c)| (at, format!("this `{c}` is not closed")))
+}
+
 #[derive(Debug, Clone, Copy)]
 enum Segment<'a> {
     Name(&'a str),
@@ -276,6 +316,16 @@ mod tests {
     }
 
     #[test]
+    fn brackets_without_a_partner_are_found_and_those_in_text_are_not_counted() {
+        assert_eq!(unbalanced(TEXT), None);
+        let found = |text| unbalanced(text).map(|(at, _)| at);
+        assert_eq!(found("(a: [1, 2)"), Some(4));
+        assert_eq!(found("(a: 1))"), Some(6));
+        assert_eq!(found("(a: \")\", b: ']'"), Some(0));
+        assert_eq!(found("(over: 1) // ("), None);
+    }
+
+    #[test]
     fn any_text_is_scanned_without_a_panic() {
         for end in (0..TEXT.len()).filter(|i| TEXT.is_char_boundary(*i)) {
             for path in [
@@ -287,6 +337,8 @@ mod tests {
                 locate(&TEXT[..end], path);
                 locate(&TEXT[end..], path);
             }
+            unbalanced(&TEXT[..end]);
+            unbalanced(&TEXT[end..]);
         }
     }
 }

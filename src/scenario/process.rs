@@ -40,6 +40,28 @@ pub enum SupplySpec {
         #[serde(default)]
         until: Option<Time>,
     },
+    /// Taken up from a bath through wax or other cover (paper B; model section 3): each step brings
+    /// the liquid nearer to the bath's by s = α·p·(M_s − c).
+    Bath {
+        /// p, how far the bath reaches through: all of it where 1, nothing where 0.
+        shape: Pattern,
+        /// M_s, the concentration of the bath, 0 to 1 (full).
+        #[serde(default = "full")]
+        dose: f64,
+        /// α, the share of the difference that one step makes up, 0 to 0.5.
+        #[serde(default = "bath_speed")]
+        speed: f64,
+        /// From when.
+        #[serde(default = "start")]
+        from: Time,
+        /// Until when. Left out: to the end.
+        #[serde(default)]
+        until: Option<Time>,
+    },
+}
+
+fn bath_speed() -> f64 {
+    0.3
 }
 
 fn full() -> f64 {
@@ -54,7 +76,9 @@ impl SupplySpec {
     /// Where dye is given.
     pub fn shape(&self) -> &Pattern {
         match self {
-            SupplySpec::Dose { shape, .. } | SupplySpec::Hold { shape, .. } => shape,
+            SupplySpec::Dose { shape, .. }
+            | SupplySpec::Hold { shape, .. }
+            | SupplySpec::Bath { shape, .. } => shape,
         }
     }
 
@@ -69,18 +93,33 @@ impl SupplySpec {
                 dose, from, until, ..
             } => {
                 at.field("dose").within(*dose, 0.0..=1.0)?;
-                from.check(&at.field("from"), step_h)?;
-                let Some(until) = until else { return Ok(()) };
-                until.check(&at.field("until"), step_h)?;
-                if until.steps(step_h) < from.steps(step_h) {
-                    return Err(at.field("until").problem(format!(
-                        "a hold ends after it begins, but {until:?} is before {from:?}"
-                    )));
-                }
-                Ok(())
+                check_span(at, *from, *until, step_h)
+            }
+            SupplySpec::Bath {
+                dose,
+                speed,
+                from,
+                until,
+                ..
+            } => {
+                at.field("dose").within(*dose, 0.0..=1.0)?;
+                at.field("speed").within(*speed, 0.0..=0.5)?;
+                check_span(at, *from, *until, step_h)
             }
         }
     }
+}
+
+fn check_span(at: &Checker, from: Time, until: Option<Time>, step_h: f64) -> Result<(), Problem> {
+    from.check(&at.field("from"), step_h)?;
+    let Some(until) = until else { return Ok(()) };
+    until.check(&at.field("until"), step_h)?;
+    if until.steps(step_h) < from.steps(step_h) {
+        return Err(at.field("until").problem(format!(
+            "it ends after it begins, but {until:?} is before {from:?}"
+        )));
+    }
+    Ok(())
 }
 
 /// How long dyeing lasts.

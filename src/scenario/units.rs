@@ -73,7 +73,7 @@ pub enum Time {
     Days(f64),
 }
 
-/// The longest process, in steps: more than any clock of 64-bit floats counts exactly.
+/// The longest process, in steps: its hours are still counted exactly in a 64-bit float.
 pub const MOST_STEPS: u64 = 1 << 50;
 
 impl Time {

@@ -1,6 +1,7 @@
 //! An independent solver: double precision, one cell after the other, written from the model
 //! (sections 2 to 4) and sharing nothing with the engine but the cloth's own description.
 
+use dyelapse::pattern::Canvas;
 use dyelapse::prelude::*;
 use dyelapse::scenario::{Isotherm, SupplySpec};
 
@@ -13,16 +14,33 @@ pub struct Reference {
     v_d: Vec<f64>,
     phi: Vec<f64>,
     bound: Vec<f64>,
-    held: Vec<Option<f64>>,
-    until: u64,
+    supplies: Vec<Given>,
+    /// Into how many parts a step is split.
+    parts: u32,
     equilibrium: f64,
     share: f64,
     isotherm: Option<Isotherm>,
     step: u64,
 }
 
+struct Given {
+    /// The value of the shape in every cell.
+    shape: Vec<f64>,
+    most: f64,
+    kind: Kind,
+}
+
+/// When something is given, in steps.
+#[derive(Clone, Copy)]
+enum Kind {
+    Dose(u64),
+    Hold(u64, Option<u64>),
+    Bath(u64, Option<u64>, f64),
+}
+
 impl Reference {
-    pub fn of(experiment: &Experiment, cloth: &Cloth) -> Self {
+    /// A solver of the same experiment, which splits each step into `parts`.
+    pub fn of(experiment: &Experiment, cloth: &Cloth, parts: u32) -> Self {
         let scenario = &experiment.scenario;
         let Grid { nx, ny } = cloth.grid;
         let paths = scenario.cloth.paths;
@@ -73,19 +91,43 @@ impl Reference {
                 near.into_iter().map(|j| (j, coefficient(i, j))).collect()
             })
             .collect();
-        let until = scenario.supply.iter().find_map(|supply| match supply {
-            SupplySpec::Hold { until, .. } => Some(until.map(|t| t.steps(0.0005))),
-            SupplySpec::Dose { .. } => None,
-        });
+        let canvas = Canvas::of(experiment);
+        let steps = |time: dyelapse::scenario::Time| time.steps(scenario.process.step_h);
+        let supplies = scenario
+            .supply
+            .iter()
+            .map(|spec| {
+                let shape = canvas.draw(spec.shape()).values;
+                let both = shape.iter().chain(&shape).map(|v| f64::from(*v)).collect();
+                let (most, kind) = match spec {
+                    SupplySpec::Dose { dose, at, .. } => (dose, Kind::Dose(steps(*at))),
+                    SupplySpec::Hold {
+                        dose, from, until, ..
+                    } => (dose, Kind::Hold(steps(*from), until.map(steps))),
+                    SupplySpec::Bath {
+                        dose,
+                        speed,
+                        from,
+                        until,
+                        ..
+                    } => (dose, Kind::Bath(steps(*from), until.map(steps), *speed)),
+                };
+                Given {
+                    shape: both,
+                    most: f64::from(*most as f32),
+                    kind,
+                }
+            })
+            .collect();
         Reference {
             nx,
             ny,
             links,
             v_d: cloth.capacity_bound.iter().map(|v| f64::from(*v)).collect(),
-            phi: Vec::new(),
+            phi: vec![0.0; v_u.len()],
             bound: vec![0.0; v_u.len()],
-            held: Vec::new(),
-            until: until.flatten().unwrap_or(u64::MAX),
+            supplies,
+            parts,
             equilibrium: scenario.dye.equilibrium,
             share: scenario.adsorption.map_or(0.0, |a| a.rate * d0 * scale),
             isotherm: scenario.adsorption.map(|a| a.isotherm),
@@ -94,43 +136,91 @@ impl Reference {
         }
     }
 
-    /// Begins from a concentration in which only held cells are full.
-    pub fn begin(&mut self, concentration: &[f32]) {
-        let c = concentration.iter().map(|c| f64::from(*c));
-        self.phi = c.zip(&self.v_u).map(|(c, v)| c * v).collect();
-        let held = |c: &f32| (*c == 1.0).then_some(1.0);
-        self.held = concentration.iter().map(held).collect();
-    }
-
+    /// Goes on to a step and gives what is due there.
     pub fn go_on(&mut self, step: u64) {
         while self.step < step {
-            self.one_step();
+            for part in 0..self.parts {
+                if part == 0 {
+                    self.give();
+                }
+                self.keep();
+                self.soak();
+                self.spread();
+                self.bind();
+            }
             self.step += 1;
-            self.keep_held();
+        }
+        self.give();
+        self.keep();
+    }
+
+    fn is_on(&self, from: u64, until: Option<u64>) -> bool {
+        from <= self.step && until.is_none_or(|until| self.step < until)
+    }
+
+    /// What is kept in a cell now: the last hold of the scenario that reaches it.
+    fn kept(&self, i: usize) -> Option<f64> {
+        let reaching = self.supplies.iter().rev().find(|given| match given.kind {
+            Kind::Hold(from, until) => self.is_on(from, until) && given.shape[i] > 0.0,
+            _ => false,
+        });
+        reaching.map(|given| given.most * given.shape[i])
+    }
+
+    fn give(&mut self) {
+        for i in (0..self.phi.len()).filter(|i| self.v_u[*i] > 0.0) {
+            if self.kept(i).is_some() {
+                continue;
+            }
+            let v_u = self.v_u[i];
+            for given in self.supplies.iter().filter(|given| given.shape[i] > 0.0) {
+                if matches!(given.kind, Kind::Hold(_, Some(until)) if until == self.step) {
+                    self.phi[i] = given.most * given.shape[i] * v_u;
+                }
+            }
+            for given in self.supplies.iter().filter(|given| given.shape[i] > 0.0) {
+                if matches!(given.kind, Kind::Dose(at) if at == self.step) {
+                    self.phi[i] = self.phi[i].max(given.most * given.shape[i] * v_u);
+                }
+            }
         }
     }
 
-    fn keep_held(&mut self) {
-        if self.step > self.until {
-            return;
-        }
-        for (i, held) in self.held.iter().enumerate() {
-            if let Some(c) = held {
+    fn keep(&mut self) {
+        for i in 0..self.phi.len() {
+            if let Some(c) = self.kept(i) {
                 self.phi[i] = c * self.v_u[i];
             }
         }
     }
 
-    fn one_step(&mut self) {
-        let c: Vec<f64> = (0..self.phi.len())
-            .map(|i| {
-                if self.v_u[i] > 0.0 {
-                    self.phi[i] / self.v_u[i]
-                } else {
-                    0.0
+    fn soak(&mut self) {
+        for given in &self.supplies {
+            let Kind::Bath(from, until, speed) = given.kind else {
+                continue;
+            };
+            if !self.is_on(from, until) {
+                continue;
+            }
+            for i in 0..self.phi.len() {
+                if self.kept(i).is_some() {
+                    continue;
                 }
-            })
-            .collect();
+                let missing = given.most * self.v_u[i] - self.phi[i];
+                self.phi[i] += speed / f64::from(self.parts) * given.shape[i] * missing;
+            }
+        }
+    }
+
+    fn spread(&mut self) {
+        let concentration = |i: usize| {
+            if self.v_u[i] > 0.0 {
+                self.phi[i] / self.v_u[i]
+            } else {
+                0.0
+            }
+        };
+        let c: Vec<f64> = (0..self.phi.len()).map(concentration).collect();
         for i in 0..c.len() {
             for (j, conductance) in &self.links[i] {
                 let mean = (c[i] + c[*j]) / 2.0;
@@ -139,21 +229,29 @@ impl Reference {
                 } else {
                     1.0
                 };
-                self.phi[i] += conductance * rho * (c[*j] - c[i]);
+                let part = conductance / f64::from(self.parts);
+                self.phi[i] += part * rho * (c[*j] - c[i]);
             }
         }
+    }
+
+    fn bind(&mut self) {
         let Some(isotherm) = self.isotherm else {
             return;
         };
-        for i in 0..c.len() {
-            let (phi, v_d) = (self.phi[i], self.v_d[i]);
-            let a_d = match isotherm {
-                Isotherm::Partition { k } => k * phi,
-                Isotherm::Freundlich { k, b } => k * phi.max(0.0).powf(b),
-                Isotherm::Langmuir { kl } => v_d * kl * phi / (1.0 + kl * phi),
+        for i in 0..self.phi.len() {
+            let (phi, v_d, a) = (self.phi[i], self.v_d[i], self.bound[i]);
+            let parts = f64::from(self.parts);
+            let share = self.share / parts * phi;
+            let up_to = |a_d: f64| share.min((a_d.min(v_d) - a).max(0.0));
+            let gained = match isotherm {
+                Isotherm::Partition { k } => up_to(k * phi),
+                Isotherm::Freundlich { k, b } => up_to(k * phi.max(0.0).powf(b)),
+                Isotherm::Langmuir { kl } => up_to(v_d * kl * phi / (1.0 + kl * phi)),
+                Isotherm::Saturating { speed, most } => {
+                    speed / parts * (most.min(v_d) - a).max(0.0) * phi
+                }
             };
-            let room = (a_d.min(v_d) - self.bound[i]).max(0.0);
-            let gained = (self.share * phi).clamp(0.0, room);
             self.bound[i] += gained;
             self.phi[i] -= gained;
         }
