@@ -35,7 +35,7 @@ pub struct Scale(pub u32);
 pub struct Texture {
     /// Pixels along one side of a cell.
     pub scale: usize,
-    /// For every position `(y, x)`, the index of the cell that is seen there.
+    /// For every position `(y, x)`, the index of the cell that gives it its colour.
     pub seen: Vec<u32>,
     /// The shade of every pixel, row by row.
     pub shade: Vec<f32>,
@@ -63,7 +63,7 @@ impl Texture {
         let mut seen = vec![0; cloth.grid.layer_len()];
         seen.par_chunks_mut(nx).enumerate().for_each(|(y, row)| {
             for (x, cell) in row.iter_mut().enumerate() {
-                *cell = cloth.grid.index(shade::seen(cloth, y, x), y, x) as u32;
+                *cell = shade::coloured_by(cloth, y, x) as u32;
             }
         });
         Texture {

@@ -28,6 +28,18 @@ pub fn seen(cloth: &Cloth, y: usize, x: usize) -> Layer {
     }
 }
 
+/// The cell whose dye gives a position its colour: the one that is seen. Through a gap nothing is
+/// seen but the shaded side of the yarn beside it.
+pub(super) fn coloured_by(cloth: &Cloth, y: usize, x: usize) -> usize {
+    let layer = seen(cloth, y, x);
+    if cloth.fibre(layer, y, x) {
+        return cloth.grid.index(layer, y, x);
+    }
+    let (warp, number) = (&cloth.warp, cloth.warp.number(x));
+    let beside = number * warp.pitch() + warp.width - 1;
+    cloth.grid.index(Layer::Warp, y, beside)
+}
+
 /// Draws the shade of undyed cloth at `scale` pixels a cell, row by row, 0 to about 1.
 pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<f32> {
     let shades = [
