@@ -6,6 +6,8 @@ use thiserror::Error;
 use crate::pattern::Pattern;
 use crate::scenario::Scenario;
 
+/// Bytes of the program itself.
+const BYTES_AT_LEAST: u128 = 20_000_000;
 /// Bytes of every field kept for one cell of a layer: three of free dye, two of conductances along
 /// the cloth, half of one between the layers, capacities and their inverse, half of the resist, and
 /// half of which cell is seen.
@@ -85,7 +87,7 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
         .max()
         .unwrap_or(0);
     // A held cell is listed with its place and dose: while it lasts, for its end, and among all.
-    let held = 3 * 8 * scenario.supply.len() as u128;
+    let held = 5 * 8 * scenario.supply.len() as u128;
     // Images are kept as rasters beside the ones that are drawn.
     let every = scenario.patterns();
     let is_image = |(pattern, _): &&(&Pattern, _)| matches!(pattern, Pattern::Image { .. });
@@ -94,7 +96,8 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
     let recorded = if fields { BYTES_PER_RECORDED_CELL } else { 0 };
     let binding = scenario.adsorption.map_or(0, |_| BYTES_PER_BINDING_CELL);
     let places = scenario.record.sheet.len().max(8) as u128;
-    cells * (BYTES_PER_CELL + held + recorded + binding)
+    BYTES_AT_LEAST
+        + cells * (BYTES_PER_CELL + held + recorded + binding)
         + cells / 2 * per_layer_cell
         + pixels * BYTES_PER_PIXEL
         + places * BYTES_PER_SHEET_PLACE.min(40 * pixels)

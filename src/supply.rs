@@ -139,28 +139,53 @@ impl Supplies {
         }
     }
 
-    /// Finds what is kept at a step. Where holds overlap, the later one of the scenario counts.
+    /// Finds what is kept at a step.
     fn find_kept(&mut self, step: u64) {
         if step < self.kept_until {
             return;
         }
-        let is_on = |hold: &&Hold| hold.from <= step && step < hold.until;
-        let mut kept: Vec<Cell> = Vec::new();
-        for hold in self.holds.iter().filter(is_on) {
-            // Later ones come behind earlier ones, and the sort leaves equals in their order.
-            kept.extend(&hold.cells);
-        }
-        kept.sort_by_key(|(i, _)| *i);
-        kept.reverse();
-        kept.dedup_by_key(|(i, _)| *i);
-        kept.reverse();
-        self.kept = kept;
+        let is_on = |hold: &Hold| hold.from <= step && step < hold.until;
+        self.kept = effective(&self.holds, is_on)
+            .map(|(cell, _)| cell)
+            .collect();
         let changes = self.holds.iter().flat_map(|hold| [hold.from, hold.until]);
         self.kept_until = changes
             .filter(|change| *change > step)
             .min()
             .unwrap_or(u64::MAX);
     }
+
+    /// Adds what the holds do at their ends.
+    fn end_holds(&mut self) {
+        let mut ends: Vec<u64> = self.holds.iter().map(|hold| hold.until).collect();
+        ends.retain(|end| *end != u64::MAX);
+        ends.sort_unstable();
+        ends.dedup();
+        for at in ends {
+            // Up to its end a hold counts where it counted before.
+            let was_on = |hold: &Hold| {
+                (hold.from < at && at <= hold.until) || (hold.from == at && hold.until == at)
+            };
+            let ending = effective(&self.holds, was_on).filter(|(_, hold)| hold.until == at);
+            let cells = ending.map(|(cell, _)| cell).collect();
+            let gift = Gift::LastOfHold;
+            self.events.push(Event { at, cells, gift });
+        }
+    }
+}
+
+/// The cells that those of the holds which are `on` keep, in order, each with its hold. Where they
+/// overlap, the later one of the scenario counts.
+fn effective(holds: &[Hold], on: impl Fn(&Hold) -> bool) -> impl Iterator<Item = (Cell, &Hold)> {
+    let mut cells: Vec<(Cell, &Hold)> = Vec::new();
+    for hold in holds.iter().filter(|hold| on(hold)) {
+        cells.extend(hold.cells.iter().map(|cell| (*cell, hold)));
+    }
+    // The sort leaves equals in their order: the last one of each counts.
+    cells.sort_by_key(|((i, _), _)| *i);
+    cells.reverse();
+    cells.dedup_by_key(|((i, _), _)| *i);
+    cells.into_iter().rev()
 }
 
 fn bring(
@@ -206,18 +231,10 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
             SupplySpec::Hold {
                 dose, from, until, ..
             } => {
-                let cells = reached(&shape, *dose as f32, &cloth);
-                if let Some(until) = until {
-                    supplies.events.push(Event {
-                        at: until.steps(step_h),
-                        cells: cells.clone(),
-                        gift: Gift::LastOfHold,
-                    });
-                }
                 supplies.holds.push(Hold {
                     from: from.steps(step_h),
                     until: until.map_or(u64::MAX, |until| until.steps(step_h)),
-                    cells,
+                    cells: reached(&shape, *dose as f32, &cloth),
                 });
             }
             SupplySpec::Bath {
@@ -234,6 +251,7 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
             }),
         }
     }
+    supplies.end_holds();
     supplies.events.sort_by_key(|event| (event.at, event.gift));
     commands.insert_resource(supplies);
 }

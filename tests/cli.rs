@@ -156,7 +156,15 @@ fn a_folder_with_anything_in_it_is_refused_and_force_clears_only_a_recording() {
         "record", "fig8a", "--steps", "9", "--frames", "4", "--fields", "--out", "out",
     ];
     dyelapse(&here).args(long).assert().success();
-    fs::write(out.join("notes.txt"), "mine").unwrap();
+    // The user's own, some with names that the recording could have given but did not.
+    for name in [
+        "notes.txt",
+        "video.mp4",
+        "frame_00099.png",
+        "state_12345.npz",
+    ] {
+        fs::write(out.join(name), "mine").unwrap();
+    }
     let before = contents(&out);
     let (code, text) = said(dyelapse(&here).args(SHORT).args(["--out", "out"]));
     assert_eq!(code, 2);
@@ -177,14 +185,24 @@ fn a_folder_with_anything_in_it_is_refused_and_force_clears_only_a_recording() {
         names,
         [
             "frame_00000.png",
+            "frame_00099.png",
             "ledger.csv",
             "notes.txt",
             "recording.ron",
             "scenario.ron",
-            "sheet.png"
+            "sheet.png",
+            "state_12345.npz",
+            "video.mp4"
         ]
     );
-    assert_eq!(files["notes.txt"], b"mine");
+    for name in [
+        "notes.txt",
+        "video.mp4",
+        "frame_00099.png",
+        "state_12345.npz",
+    ] {
+        assert_eq!(files[name], b"mine", "{name}");
+    }
 }
 
 #[test]
@@ -207,10 +225,31 @@ fn force_never_touches_what_no_recording_made() {
         .save(here.path().join("paste.png"))
         .unwrap();
     let scenario = "(title: \"own\", cloth: (size: (Cells(20), Cells(10))), supply: [],
-        resist: Image(file: \"paste.png\"), process: (duration: Steps(2)))";
+        resist: Image(file: \"./paste.png\"), process: (duration: Steps(2)))";
     fs::write(here.path().join("own.ron"), scenario).unwrap();
     let text = forced(&["record", "own.ron", "--out", "."]);
-    assert!(text.contains("the scenario lies in"), "{text}");
+    assert!(text.contains("own.ron lies in the folder"), "{text}");
+    // A manifest that names what lies elsewhere.
+    fs::write(here.path().join("precious.txt"), "mine").unwrap();
+    dyelapse(&here)
+        .args(SHORT)
+        .args(["--out", "w"])
+        .assert()
+        .success();
+    let manifest = here.path().join("w/recording.ron");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let absolute = here.path().join("precious.txt").display().to_string();
+    let text = text.replace(
+        "pictures: []",
+        &format!("pictures: [\"../precious.txt\", {absolute:?}]"),
+    );
+    fs::write(&manifest, text).unwrap();
+    dyelapse(&here)
+        .args(SHORT)
+        .args(["--out", "w", "--force"])
+        .assert()
+        .success();
+    assert_eq!(fs::read(here.path().join("precious.txt")).unwrap(), b"mine");
     // A picture of that name which is not the scenario's copy.
     fs::create_dir(here.path().join("out")).unwrap();
     fs::write(here.path().join("out/paste.png"), "mine").unwrap();

@@ -199,6 +199,30 @@ fn a_hold_keeps_its_dose_to_its_end_and_takes_back_what_is_too_much() {
 }
 
 #[test]
+fn where_holds_overlap_only_the_one_that_counts_supplies() {
+    let mut app = dyeing_app(experiment(
+        "(
+            title: \"one hold over another\",
+            cloth: (size: (Cells(4), Cells(4)), warp: (gap: Cells(0))),
+            supply: [
+                Hold(shape: Everywhere, dose: 0.2, until: Steps(10)),
+                Hold(shape: Everywhere, dose: 1.0, until: Steps(10)),
+            ],
+            process: (duration: Steps(20)),
+        )",
+    ));
+    for step in 0..=20 {
+        go_on(&mut app, step);
+        let ledger = ledger(&app);
+        assert_eq!(
+            (ledger.supplied, ledger.removed),
+            (16.0, 0.0),
+            "step {step}"
+        );
+    }
+}
+
+#[test]
 fn a_second_dose_never_takes_dye_away() {
     let mut app = dyeing_app(experiment(
         "(

@@ -36,11 +36,12 @@ fn check(name: &str) -> Result<String, String> {
     let plan = Plan::new(scenario, None, None).map_err(|why| format!("{name}: {why}"))?;
     let (nx, ny) = scenario.cloth.cells();
     let hours = plan.steps as f64 * scenario.process.step_h;
-    let megabytes = memory::needed(scenario, Use::of(scenario)) / 1_000_000;
+    let megabytes =
+        (memory::needed(scenario, Use::of(scenario)) + experiment.images.bytes()) / 1_000_000;
     Ok(format!(
         "right; {nx}×{ny}×2 cells, {} steps ({hours} h), {} frames, at most {} MB of memory",
         plan.steps,
         plan.frames(),
-        megabytes.max(1)
+        megabytes
     ))
 }

@@ -55,10 +55,8 @@ pub enum RecordError {
         .0.display()
     )]
     Foreign(PathBuf),
-    /// The scenario lies in the folder that is to be cleared for it.
-    #[error(
-        "the scenario lies in {} itself: choose another folder with --out", .0.display()
-    )]
+    /// The scenario, or a picture of it, lies in the folder itself.
+    #[error("{} lies in the folder of the recording itself: choose another with --out", .0.display())]
     OwnFolder(PathBuf),
     /// A picture of the scenario has the name of a file that a recording makes.
     #[error("the picture {0} has the name of a file that a recording makes: give it another name")]

@@ -20,9 +20,18 @@ struct Archive<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> Archive<W> {
-    fn new(file: W) -> Self {
-        Archive {
+    /// Writes an archive of what `fill` adds to it.
+    fn write(file: W, fill: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<()> {
+        let mut archive = Archive {
             zip: ZipWriter::new(file),
+        };
+        match fill(&mut archive) {
+            Ok(()) => archive.zip.finish().map(|_| ()).map_err(Into::into),
+            Err(why) => {
+                // Dropped, it would try to finish the archive and complain that it cannot.
+                std::mem::forget(archive.zip);
+                Err(why)
+            }
         }
     }
 
@@ -53,11 +62,6 @@ impl<W: Write + Seek> Archive<W> {
     fn scalar<T: AutoSerialize>(&mut self, name: &str, value: T) -> io::Result<()> {
         self.add(name, &[], [value])
     }
-
-    fn finish(self) -> io::Result<()> {
-        self.zip.finish()?;
-        Ok(())
-    }
 }
 
 /// Every cell `(layer, y, x)` in the order of the arrays, with `less_y` rows and `less_x` columns
@@ -86,47 +90,48 @@ pub(super) fn write_cloth(
     };
     let whole = [2, ny, nx];
     let one_layer = || (0..ny).flat_map(|y| (0..nx).map(move |x| (y, x)));
-    let mut archive = Archive::new(file);
-    let x = cells(grid, 0, 1).map(|(l, y, x)| faces.x(l, y, x) as f32);
-    archive.add("face_x", &[2, ny, nx - 1], x)?;
-    let y = cells(grid, 1, 0).map(|(l, y, x)| faces.y(l, y, x) as f32);
-    archive.add("face_y", &[2, ny - 1, nx], y)?;
-    let z = one_layer().map(|(y, x)| faces.z(y, x) as f32);
-    archive.add("face_z", &[ny, nx], z)?;
-    archive.add("capacity_free", &whole, cloth.capacity_free.iter().copied())?;
-    archive.add(
-        "capacity_bound",
-        &whole,
-        cloth.capacity_bound.iter().copied(),
-    )?;
-    let porosity = cells(grid, 0, 0).map(|(l, y, x)| cloth.porosity(l, y, x) as f32);
-    archive.add("porosity", &whole, porosity)?;
-    let resist = cells(grid, 0, 0).map(|(l, y, x)| cloth.volume_ratio(l, y, x) as f32);
-    archive.add("resist", &whole, resist)?;
-    let fibre = cells(grid, 0, 0).map(|(l, y, x)| cloth.fibre(l, y, x));
-    archive.add("fibre", &whole, fibre)?;
-    let warp_up = one_layer().map(|(y, x)| cloth.warp_up(y, x));
-    archive.add("warp_up", &[ny, nx], warp_up)?;
-    archive.scalar("cell_mm", cloth.cell_mm)?;
-    archive.scalar("dt_h", scenario.process.step_h)?;
-    archive.scalar("d0_mm2_h", scenario.dye.diffusivity.in_water())?;
-    archive.scalar("phi0", scenario.dye.equilibrium)?;
-    let (isotherm, k, b) = match scenario.adsorption.map(|adsorption| adsorption.isotherm) {
-        None => (0_i64, 0.0, 0.0),
-        Some(Isotherm::Partition { k }) => (1, k, 1.0),
-        Some(Isotherm::Freundlich { k, b }) => (2, k, b),
-        Some(Isotherm::Langmuir { kl }) => (3, kl, 0.0),
-        Some(Isotherm::Saturating { speed, most }) => (4, speed, most),
-    };
-    archive.scalar("isotherm", isotherm)?;
-    archive.scalar("isotherm_k", k)?;
-    archive.scalar("isotherm_b", b)?;
-    archive.scalar("splits", i64::from(splits))?;
-    let rate = scenario
-        .adsorption
-        .map_or(0.0, |adsorption| adsorption.rate);
-    archive.scalar("dab_mm2_h", rate * scenario.dye.diffusivity.in_water())?;
-    archive.finish()
+    Archive::write(file, |archive| {
+        let x = cells(grid, 0, 1).map(|(l, y, x)| faces.x(l, y, x) as f32);
+        archive.add("face_x", &[2, ny, nx - 1], x)?;
+        let y = cells(grid, 1, 0).map(|(l, y, x)| faces.y(l, y, x) as f32);
+        archive.add("face_y", &[2, ny - 1, nx], y)?;
+        let z = one_layer().map(|(y, x)| faces.z(y, x) as f32);
+        archive.add("face_z", &[ny, nx], z)?;
+        archive.add("capacity_free", &whole, cloth.capacity_free.iter().copied())?;
+        archive.add(
+            "capacity_bound",
+            &whole,
+            cloth.capacity_bound.iter().copied(),
+        )?;
+        let porosity = cells(grid, 0, 0).map(|(l, y, x)| cloth.porosity(l, y, x) as f32);
+        archive.add("porosity", &whole, porosity)?;
+        let resist = cells(grid, 0, 0).map(|(l, y, x)| cloth.volume_ratio(l, y, x) as f32);
+        archive.add("resist", &whole, resist)?;
+        let fibre = cells(grid, 0, 0).map(|(l, y, x)| cloth.fibre(l, y, x));
+        archive.add("fibre", &whole, fibre)?;
+        let warp_up = one_layer().map(|(y, x)| cloth.warp_up(y, x));
+        archive.add("warp_up", &[ny, nx], warp_up)?;
+        archive.scalar("cell_mm", cloth.cell_mm)?;
+        archive.scalar("dt_h", scenario.process.step_h)?;
+        archive.scalar("d0_mm2_h", scenario.dye.diffusivity.in_water())?;
+        archive.scalar("phi0", scenario.dye.equilibrium)?;
+        let (isotherm, k, b) = match scenario.adsorption.map(|adsorption| adsorption.isotherm) {
+            None => (0_i64, 0.0, 0.0),
+            Some(Isotherm::Partition { k }) => (1, k, 1.0),
+            Some(Isotherm::Freundlich { k, b }) => (2, k, b),
+            Some(Isotherm::Langmuir { kl }) => (3, kl, 0.0),
+            Some(Isotherm::Saturating { speed, most }) => (4, speed, most),
+        };
+        archive.scalar("isotherm", isotherm)?;
+        archive.scalar("isotherm_k", k)?;
+        archive.scalar("isotherm_b", b)?;
+        archive.scalar("splits", i64::from(splits))?;
+        let rate = scenario
+            .adsorption
+            .map_or(0.0, |adsorption| adsorption.rate);
+        archive.scalar("dab_mm2_h", rate * scenario.dye.diffusivity.in_water())?;
+        Ok(())
+    })
 }
 
 /// What changes from frame to frame.
@@ -162,12 +167,13 @@ impl State {
     /// Writes them as an archive.
     pub fn write(&self, file: &mut BufWriter<File>) -> io::Result<()> {
         let shape = [2, self.grid.ny, self.grid.nx];
-        let mut archive = Archive::new(file);
-        archive.add("free", &shape, self.free.iter().copied())?;
-        archive.add("bound", &shape, self.bound.iter().copied())?;
-        archive.add("held", &shape, self.held.iter().copied())?;
-        archive.scalar("step", self.step as i64)?;
-        archive.scalar("time_h", self.hours)?;
-        archive.finish()
+        Archive::write(file, |archive| {
+            archive.add("free", &shape, self.free.iter().copied())?;
+            archive.add("bound", &shape, self.bound.iter().copied())?;
+            archive.add("held", &shape, self.held.iter().copied())?;
+            archive.scalar("step", self.step as i64)?;
+            archive.scalar("time_h", self.hours)?;
+            Ok(())
+        })
     }
 }

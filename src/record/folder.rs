@@ -1,8 +1,9 @@
 //! The folder of a recording: claimed once, and every file in it whole or not there at all.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::RecordError;
 use super::manifest::{MANIFEST, Manifest};
@@ -16,15 +17,55 @@ pub(super) struct Folder {
 /// What marks a file that is still being written.
 const UNFINISHED: &str = ".part";
 
+/// The names of everything that a recording may make.
+pub(super) fn names_of(recording: &Manifest) -> BTreeSet<String> {
+    let mut names: BTreeSet<String> = ["scenario.ron", "ledger.csv", "sheet.png", MANIFEST]
+        .map(Into::into)
+        .into();
+    for frame in 0..recording.frames_planned {
+        names.insert(frame_name(frame));
+        if recording.fields {
+            names.insert(state_name(frame));
+        }
+    }
+    if recording.fields {
+        names.insert("cloth.npz".into());
+    }
+    if recording.video {
+        names.insert("video.mp4".into());
+    }
+    names.extend(recording.pictures.iter().filter_map(|name| below(name)));
+    names
+}
+
+/// The name of a frame's picture.
+pub(super) fn frame_name(frame: u32) -> String {
+    format!("frame_{frame:05}.png")
+}
+
+/// The name of a frame's fields.
+pub(super) fn state_name(frame: u32) -> String {
+    format!("state_{frame:05}.npz")
+}
+
+/// A path written plainly, if it leads to something below where it begins: no `..`, no root.
+pub(super) fn below(path: &str) -> Option<String> {
+    let mut parts = Vec::new();
+    for part in Path::new(path).components() {
+        match part {
+            Component::Normal(part) => parts.push(part.to_str()?),
+            Component::CurDir => {}
+            _ => return None,
+        }
+    }
+    (!parts.is_empty()).then(|| parts.join("/"))
+}
+
 impl Folder {
-    /// Makes the folder, or takes an empty one. With `force`, a recording in it is cleared away;
-    /// files that no recording has made are never touched, and where the new recording would
-    /// need the name of one, the folder is refused. `pictures` are the scenario's, by their paths.
-    pub(super) fn claim(
-        path: &Path,
-        force: bool,
-        pictures: &[String],
-    ) -> Result<Self, RecordError> {
+    /// Makes the folder, or takes an empty one. With `force`, a recording in it is cleared away: what
+    /// its manifest says that it made. Everything else is left alone, and where the `new` recording
+    /// would need the name of something else, the folder is refused.
+    pub(super) fn claim(path: &Path, force: bool, new: &Manifest) -> Result<Self, RecordError> {
         let failed = |why| RecordError::Folder {
             path: path.into(),
             why,
@@ -33,42 +74,46 @@ impl Folder {
             return Err(RecordError::NotAFolder(path.into()));
         }
         let folder = Folder { path: path.into() };
-        if let Some(picture) = pictures.iter().find(|name| is_of_a_recording(name)) {
+        let own = names_of(&Manifest {
+            pictures: Vec::new(),
+            ..new.clone()
+        });
+        if let Some(picture) = new.pictures.iter().find(|name| own.contains(*name)) {
             return Err(RecordError::TakenName(picture.into()));
         }
         fs::create_dir_all(path).map_err(failed)?;
-        let entries: Vec<_> = fs::read_dir(path)
-            .and_then(Iterator::collect::<io::Result<_>>)
-            .map_err(failed)?;
-        if entries.is_empty() {
+        let mut entries = fs::read_dir(path).map_err(failed)?;
+        if entries.next().is_none() {
             return Ok(folder);
         }
         if !force {
             return Err(RecordError::NotEmpty(path.into()));
         }
-        let old = folder.old_manifest();
-        let named: Vec<PathBuf> = entries
-            .iter()
-            .filter(|entry| entry.file_name().to_str().is_some_and(is_of_a_recording))
-            .map(fs::DirEntry::path)
-            .collect();
-        let old_pictures = old.as_ref().map_or(&[][..], |old| &old.pictures);
-        let foreign_picture = pictures
-            .iter()
-            .filter(|name| !old_pictures.contains(name))
-            .map(|name| folder.file(name))
-            .find(|file| file.exists());
-        let foreign = match &old {
-            None => named.first().cloned().or(foreign_picture),
-            Some(_) => foreign_picture,
-        };
-        if let Some(file) = foreign {
-            return Err(RecordError::Foreign(file));
+        let old = folder
+            .old_manifest()
+            .map_or(BTreeSet::new(), |old| names_of(&old));
+        let exists = |name: &&String| folder.file(name).symlink_metadata().is_ok();
+        if let Some(foreign) = names_of(new).difference(&old).find(exists) {
+            return Err(RecordError::Foreign(folder.file(foreign)));
         }
-        let old_pictures = old_pictures.iter().map(|name| folder.file(name));
-        for file in named.into_iter().chain(old_pictures) {
-            if file.is_file() {
-                fs::remove_file(&file).map_err(failed)?;
+        let here = path.canonicalize().map_err(failed)?;
+        // The manifest goes last: until then the rest is known to be a recording's.
+        let others = old.iter().filter(|name| *name != MANIFEST);
+        for name in others.chain(old.get(MANIFEST)) {
+            for file in [unfinished(&folder.file(name)), folder.file(name)] {
+                // A link on the way must not lead out of the folder.
+                let is_inside = |parent: PathBuf| parent.starts_with(&here);
+                let parent = file.parent().and_then(|parent| parent.canonicalize().ok());
+                if file.symlink_metadata().is_ok() && parent.is_some_and(is_inside) {
+                    fs::remove_file(&file).map_err(failed)?;
+                }
+            }
+            // A picture's own folder, if nothing else is in it: removing fails where there is.
+            if let Some(parent) = Path::new(name)
+                .parent()
+                .filter(|p| !p.as_os_str().is_empty())
+            {
+                let _ = fs::remove_dir(folder.path.join(parent));
             }
         }
         Ok(folder)
@@ -121,56 +166,16 @@ pub(super) fn unfinished(path: &Path) -> PathBuf {
     path.with_file_name(format!(".{name}{UNFINISHED}"))
 }
 
-/// Whether a recording makes files of this name.
-fn is_of_a_recording(name: &str) -> bool {
-    let numbered = |prefix: &str, ending: &str| {
-        name.strip_prefix(prefix)
-            .and_then(|rest| rest.strip_suffix(ending))
-            .is_some_and(|number| {
-                number.len() >= 5 && number.bytes().all(|byte| byte.is_ascii_digit())
-            })
-    };
-    let single = [
-        MANIFEST,
-        "scenario.ron",
-        "ledger.csv",
-        "sheet.png",
-        "cloth.npz",
-        "video.mp4",
-    ];
-    let whole = name
-        .strip_prefix('.')
-        .and_then(|name| name.strip_suffix(UNFINISHED));
-    single.contains(&name)
-        || numbered("frame_", ".png")
-        || numbered("state_", ".npz")
-        || whole.is_some_and(is_of_a_recording)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn only_names_of_a_recording_are_its_own() {
-        for name in [
-            "frame_00000.png",
-            "frame_123456.png",
-            "state_00010.npz",
-            "sheet.png",
-            ".frame_00001.png.part",
-        ] {
-            assert!(is_of_a_recording(name), "{name}");
-        }
-        for name in [
-            "frame_1.png",
-            "frame_best.png",
-            "notes.txt",
-            "cloth.ron",
-            "my_sheet.png",
-            ".notes.txt.part",
-        ] {
-            assert!(!is_of_a_recording(name), "{name}");
+    fn a_path_below_is_written_plainly_and_no_other_is_one() {
+        assert_eq!(below("a.png").as_deref(), Some("a.png"));
+        assert_eq!(below("./pics//a.png").as_deref(), Some("pics/a.png"));
+        for path in ["../a.png", "pics/../../a.png", "/a.png", "", "."] {
+            assert_eq!(below(path), None, "{path}");
         }
     }
 }

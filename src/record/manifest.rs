@@ -19,6 +19,7 @@ pub struct Manifest {
     /// The scenario file beside this one.
     pub scenario: String,
     /// The scenario's pictures that were copied with it.
+    #[serde(default)]
     pub pictures: Vec<String>,
     /// SHA-256 of the scenario file.
     pub scenario_sha256: String,
@@ -32,6 +33,12 @@ pub struct Manifest {
     pub pixels: (usize, usize),
     /// Pixels along one side of a cell.
     pub pixels_per_cell: u32,
+    /// Frames that the recording was to have.
+    pub frames_planned: u32,
+    /// Whether the fields are kept beside the frames.
+    pub fields: bool,
+    /// Whether a film was to be made of them.
+    pub video: bool,
     /// Whether it reached its end; false if it was stopped before.
     pub complete: bool,
     /// Every frame, in order.

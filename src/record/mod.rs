@@ -84,12 +84,29 @@ pub fn record(
     if options.video && !ffmpeg_is_there() {
         return Err(RecordError::NoFfmpeg);
     }
-    if lies_in(experiment, &options.out) {
-        return Err(RecordError::OwnFolder(options.out.clone()));
+    if let Some(own) = lies_in(experiment, &options.out) {
+        return Err(RecordError::OwnFolder(own));
     }
-    let pictures = recorder::pictures_beside(experiment);
-    let folder = Folder::claim(&options.out, options.force, &pictures)?;
-    let recorder = Recorder::start(experiment, folder.clone(), &plan, scale, fields)?;
+    let (nx, ny) = scenario.cloth.cells();
+    let manifest = Manifest {
+        dyelapse: env!("CARGO_PKG_VERSION").into(),
+        title: scenario.title.clone(),
+        scenario: "scenario.ron".into(),
+        pictures: recorder::pictures_beside(experiment),
+        scenario_sha256: experiment.hash(),
+        seed: scenario.seed,
+        steps: plan.steps,
+        step_h: scenario.process.step_h,
+        pixels: (nx * scale as usize, ny * scale as usize),
+        pixels_per_cell: scale,
+        frames_planned: plan.frames(),
+        fields,
+        video: options.video,
+        complete: false,
+        frames: Vec::new(),
+    };
+    let folder = Folder::claim(&options.out, options.force, &manifest)?;
+    let recorder = Recorder::start(experiment, folder.clone(), manifest)?;
 
     let mut app = bevy::app::App::new();
     app.add_plugins((DyeingPlugins, RecordPlugin))
@@ -126,15 +143,19 @@ pub fn record(
     })
 }
 
-/// Whether a scenario's file lies in a folder itself: clearing it would clear away the scenario.
-fn lies_in(experiment: &Experiment, folder: &Path) -> bool {
+/// The scenario's file or the first of its pictures that lies in a folder: clearing the folder might
+/// clear it away.
+fn lies_in(experiment: &Experiment, folder: &Path) -> Option<PathBuf> {
     let Origin::File(file) = &experiment.origin else {
-        return false;
+        return None;
     };
-    match (file.canonicalize(), folder.canonicalize()) {
-        (Ok(file), Ok(folder)) => file.parent() == Some(&folder),
-        _ => false,
-    }
+    let beside = file.parent().unwrap_or(Path::new(""));
+    let pictures = experiment.images.files().map(|name| beside.join(name));
+    let folder = folder.canonicalize().ok()?;
+    [file.clone()]
+        .into_iter()
+        .chain(pictures)
+        .find(|own| own.canonicalize().is_ok_and(|own| own.starts_with(&folder)))
 }
 
 /// The default folder for a recording of an experiment.

@@ -89,9 +89,9 @@ impl Plan {
     }
 
     /// Frames of the time-lapse.
-    pub fn frames(&self) -> usize {
+    pub fn frames(&self) -> u32 {
         let frames = self.stops.iter().filter(|stop| stop.frame.is_some());
-        frames.count()
+        frames.count() as u32
     }
 }
 

@@ -1,14 +1,15 @@
 //! The recorder: keeps the frames that it is told to expect.
 
-use std::path::{Component, Path};
+use std::collections::BTreeSet;
+use std::path::Path;
 
 use bevy::prelude::*;
 
 use super::RecordError;
 use super::fields::{self, State};
-use super::folder::Folder;
+use super::folder::{Folder, below, frame_name, state_name};
 use super::manifest::{self, Frame, MANIFEST, Manifest};
-use super::plan::{Plan, Stop};
+use super::plan::Stop;
 use super::sheet::Sheet;
 use super::writer::{self, Job, Writer};
 use crate::adsorption::BoundDye;
@@ -42,8 +43,6 @@ pub struct Recorder {
     manifest: Manifest,
     ledger: String,
     sheet: Sheet,
-    /// Whether fields are kept beside the pictures, and the cloth's own have been.
-    fields: bool,
     expected: Option<Stop>,
     failed: Option<RecordError>,
 }
@@ -52,26 +51,8 @@ impl Recorder {
     pub(super) fn start(
         experiment: &Experiment,
         folder: Folder,
-        plan: &Plan,
-        scale: u32,
-        fields: bool,
+        manifest: Manifest,
     ) -> Result<Self, RecordError> {
-        let scenario = &experiment.scenario;
-        let (nx, ny) = scenario.cloth.cells();
-        let manifest = Manifest {
-            dyelapse: env!("CARGO_PKG_VERSION").into(),
-            title: scenario.title.clone(),
-            scenario: "scenario.ron".into(),
-            pictures: pictures_beside(experiment),
-            scenario_sha256: experiment.hash(),
-            seed: scenario.seed,
-            steps: plan.steps,
-            step_h: scenario.process.step_h,
-            pixels: (nx * scale as usize, ny * scale as usize),
-            pixels_per_cell: scale,
-            complete: false,
-            frames: Vec::new(),
-        };
         // First of all, so that whatever happens the folder is known to hold a recording.
         folder.write_text(MANIFEST, &manifest.to_ron())?;
         folder.write_text(&manifest.scenario, &experiment.text)?;
@@ -79,10 +60,9 @@ impl Recorder {
         Ok(Recorder {
             writer: Writer::start(folder.clone()),
             folder,
-            manifest,
             ledger: manifest::LEDGER_HEAD.into(),
-            sheet: Sheet::new(&scenario.title),
-            fields,
+            sheet: Sheet::new(&manifest.title),
+            manifest,
             expected: None,
             failed: None,
         })
@@ -121,16 +101,17 @@ impl Recorder {
             (Err(why), _) | (Ok(()), Some(why)) => Err(why),
             (Ok(()), None) => Ok(()),
         };
-        manifest.complete = complete && written.is_ok();
         let kept = |frame: &&Frame| folder.file(&frame.file).exists();
         let frames = manifest.frames.iter().take_while(kept).count();
         manifest.frames.truncate(frames);
         let lines: String = ledger.split_inclusive('\n').take(1 + frames).collect();
         let last = folder
-            .write_text(MANIFEST, &manifest.to_ron())
-            .and_then(|()| folder.write_text("ledger.csv", &lines))
+            .write_text("ledger.csv", &lines)
             .and_then(|()| folder.write("sheet.png", |file| writer::encode(&sheet.draw(), file)));
-        written.and(last)?;
+        let all = written.and(last);
+        manifest.complete = complete && all.is_ok();
+        let told = folder.write_text(MANIFEST, &manifest.to_ron());
+        all.and(told)?;
         Ok(manifest)
     }
 }
@@ -138,17 +119,11 @@ impl Recorder {
 /// The pictures that are copied with a scenario, so that the copy runs as well: those that lie beside
 /// or below it. Others stay where they are.
 pub(super) fn pictures_beside(experiment: &Experiment) -> Vec<String> {
-    let is_below = |file: &&str| {
-        let mut parts = Path::new(file).components();
-        parts.all(|part| matches!(part, Component::Normal(_)))
-    };
     match experiment.origin {
-        Origin::File(_) => experiment
-            .images
-            .files()
-            .filter(is_below)
-            .map(Into::into)
-            .collect(),
+        Origin::File(_) => {
+            let names: BTreeSet<String> = experiment.images.files().filter_map(below).collect();
+            names.into_iter().collect()
+        }
         Origin::Bundled | Origin::Memory => Vec::new(),
     }
 }
@@ -200,12 +175,12 @@ fn keep(
     let Some(frame) = stop.frame else {
         return;
     };
-    let name = format!("frame_{frame:05}.png");
+    let name = frame_name(frame);
     recorder.give(Job::Picture {
         name: name.clone(),
         picture: picture.clone(),
     });
-    if recorder.fields {
+    if recorder.manifest.fields {
         if recorder.manifest.frames.is_empty() {
             let written = recorder.folder.write("cloth.npz", |file| {
                 fields::write_cloth(
@@ -221,7 +196,7 @@ fn keep(
         }
         let state = State::take(&mut dyed, clock.step, hours);
         recorder.give(Job::State {
-            name: format!("state_{frame:05}.npz"),
+            name: state_name(frame),
             state: Box::new(state),
         });
     }

@@ -28,7 +28,11 @@ pub(super) fn make(folder: &Folder, manifest: &Manifest) -> Result<(), RecordErr
     }
     let film = folder.file("video.mp4");
     let unfinished = unfinished(&film);
-    let output = Command::new("ffmpeg")
+    let mut ffmpeg = Command::new("ffmpeg");
+    // Ctrl-C is for the recording; the film of what there is gets finished.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut ffmpeg, 0);
+    let output = ffmpeg
         // In the folder itself: a `%` in its path would mean something to ffmpeg.
         .current_dir(folder.file("."))
         .args(["-y", "-loglevel", "error", "-framerate", FRAMES_A_SECOND])

@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use thiserror::Error;
+use unicode_width::UnicodeWidthStr;
 
 use super::check::Problem;
 use super::locate::{self, locate};
@@ -65,9 +66,13 @@ impl fmt::Display for SourceError {
         let (name, line, column, what) = (&self.name, self.line, self.column, &self.what);
         writeln!(f, "{name}:{line}:{column}: {what}")?;
         writeln!(f, "{margin} |")?;
-        // Tabs become one space each, so that the caret stands where the column says.
-        writeln!(f, "{number} | {}", self.text.replace('\t', " "))?;
-        let before = " ".repeat(self.before);
+        // Tabs and other control characters become one space each, so that the caret stands where
+        // the column says and nothing in a file drives the terminal.
+        let shown = |c: char| if c.is_control() { ' ' } else { c };
+        let text: String = self.text.chars().map(shown).collect();
+        writeln!(f, "{number} | {text}")?;
+        let before: String = text.chars().take(self.before).collect();
+        let before = " ".repeat(before.width());
         write!(f, "{margin} | {before}{}", "^".repeat(self.width.max(1)))
     }
 }
@@ -97,8 +102,16 @@ impl SourceError {
     /// What RON could not make a scenario of.
     pub(super) fn from_ron(name: &str, source: &str, error: &ron::error::SpannedError) -> Self {
         // Brackets that do not fit together make the parser stumble far from where they are.
-        if let Some((at, what)) = locate::unbalanced(source) {
-            return SourceError::between(name, source, at, at + 1, what);
+        use ron::Error as E;
+        let is_about_a_name = matches!(
+            error.code,
+            E::NoSuchStructField { .. }
+                | E::NoSuchEnumVariant { .. }
+                | E::MissingStructField { .. }
+        );
+        let unbalanced = locate::unbalanced(source);
+        if let Some(found) = unbalanced.filter(|found| !(found.at_end && is_about_a_name)) {
+            return SourceError::between(name, source, found.begin, found.begin + 1, found.what);
         }
         let begin = offset(source, error.span.start);
         let end = offset(source, error.span.end);
@@ -244,7 +257,7 @@ fn describe(code: &ron::Error) -> String {
         }
         E::ExpectedMapColon => "expected `:` after the name of the field".into(),
         E::ExpectedArray => "a list stands in square brackets: `[ … , … ]`".into(),
-        E::ExpectedInteger => "expected a whole number".into(),
+        E::ExpectedInteger | E::InvalidIntegerDigit { .. } => "expected a whole number".into(),
         E::ExpectedFloat => "expected a number".into(),
         E::ExpectedString => "expected text in quotes".into(),
         E::ExpectedIdentifier => "expected a name: of a field, a pattern, a weave …".into(),

@@ -24,6 +24,17 @@ impl Images {
         self.rasters.get(file)
     }
 
+    /// Bytes that loading the pictures takes at most: one after the other, and then all of them.
+    pub fn bytes(&self) -> u128 {
+        let pixels = || {
+            self.rasters
+                .values()
+                .map(|raster| raster.values.len() as u128)
+        };
+        let largest = pixels().max().unwrap_or(0);
+        u128::from(BYTES_PER_PIXEL) * largest + 4 * pixels().sum::<u128>()
+    }
+
     /// The names of all pictures.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         self.rasters.keys().map(String::as_str)

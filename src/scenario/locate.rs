@@ -13,7 +13,7 @@ pub(super) struct Found {
 /// A path is made of field names and `[i]`; a name may also be that of an enum variant, which then
 /// stands for what is in its parentheses. The text is known to be good RON.
 pub(super) fn locate(text: &str, path: &str) -> Option<Found> {
-    let mut scanner = Scanner { text, at: 0 };
+    let mut scanner = Scanner::new(text);
     scanner.skip_blanks();
     while scanner.rest().starts_with("#!") {
         scanner.skip_past(']');
@@ -29,28 +29,43 @@ pub(super) fn locate(text: &str, path: &str) -> Option<Found> {
     Some(found)
 }
 
-/// Finds the first bracket that has no partner, and says what it lacks.
-pub(super) fn unbalanced(text: &str) -> Option<(usize, String)> {
-    let mut scanner = Scanner { text, at: 0 };
+/// Something in a text that has no partner.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Unbalanced {
+    /// Where it begins, in bytes.
+    pub begin: usize,
+    /// What it lacks.
+    pub what: String,
+    /// Whether only the end of the text shows it: the partner may be missing anywhere.
+    pub at_end: bool,
+}
+
+/// Finds the first bracket, quote or comment that has no partner.
+pub(super) fn unbalanced(text: &str) -> Option<Unbalanced> {
+    let mut scanner = Scanner::new(text);
     let mut open: Vec<(usize, char)> = Vec::new();
+    let found = |begin, what, at_end| {
+        Some(Unbalanced {
+            begin,
+            what,
+            at_end,
+        })
+    };
     loop {
         scanner.skip_blanks();
         let Some(c) = scanner.peek() else { break };
         let at = scanner.at;
         match c {
             '(' | '[' | '{' => open.push((at, c)),
-            ')' | ']' | '}' => match open.pop() {
-                Some((_, '(')) if c == ')' => {}
-                Some((_, '[')) if c == ']' => {}
-                Some((_, '{')) if c == '}' => {}
-                Some((opened, other)) => {
+            ')' | ']' | '}' => match (open.pop(), c) {
+                (Some((_, '(')), ')') | (Some((_, '[')), ']') | (Some((_, '{')), '}') => {}
+                (Some((opened, other)), _) => {
                     let line = text[..at].matches('\n').count() + 1;
-                    return Some((
-                        opened,
-                        format!("this `{other}` is not closed: `{c}` comes first, in line {line}"),
-                    ));
+                    let what =
+                        format!("this `{other}` is not closed: `{c}` comes first, in line {line}");
+                    return found(opened, what, false);
                 }
-                None => return Some((at, format!("this `{c}` closes nothing"))),
+                (None, _) => return found(at, format!("this `{c}` closes nothing"), false),
             },
             _ if scanner.at_string() => {
                 scanner.skip_string();
@@ -65,8 +80,11 @@ pub(super) fn unbalanced(text: &str) -> Option<(usize, String)> {
         }
         scanner.at += c.len_utf8();
     }
-    open.pop()
-        .map(|(at, c)| (at, format!("this `{c}` is not closed")))
+    if let Some((at, what)) = scanner.unclosed {
+        return found(at, format!("this {what} is not closed"), false);
+    }
+    let (at, c) = open.pop()?;
+    found(at, format!("this `{c}` is not closed"), true)
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -87,9 +105,19 @@ fn segments(path: &str) -> impl Iterator<Item = Segment<'_>> {
 struct Scanner<'a> {
     text: &'a str,
     at: usize,
+    /// Where a quote or comment begins that goes on to the end of the text, and which.
+    unclosed: Option<(usize, &'static str)>,
 }
 
 impl<'a> Scanner<'a> {
+    fn new(text: &'a str) -> Self {
+        Scanner {
+            text,
+            at: 0,
+            unclosed: None,
+        }
+    }
+
     fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -115,7 +143,7 @@ impl<'a> Scanner<'a> {
             if trimmed.starts_with("//") {
                 self.at += trimmed.find('\n').unwrap_or(trimmed.len());
             } else if trimmed.starts_with("/*") {
-                let mut depth = 0;
+                let (begin, mut depth) = (self.at, 0);
                 while !self.rest().is_empty() {
                     if self.rest().starts_with("/*") {
                         depth += 1;
@@ -129,6 +157,9 @@ impl<'a> Scanner<'a> {
                     } else {
                         self.at += self.peek().map_or(0, char::len_utf8);
                     }
+                }
+                if depth > 0 {
+                    self.unclosed.get_or_insert((begin, "comment"));
                 }
             } else {
                 return;
@@ -147,18 +178,18 @@ impl<'a> Scanner<'a> {
     }
 
     fn skip_string(&mut self) {
-        let raw = self
-            .rest()
-            .strip_prefix('r')
-            .map_or(self.rest(), |rest| rest);
-        let hashes = raw.len() - raw.trim_start_matches('#').len();
-        if self.rest().starts_with('r') {
+        let begin = self.at;
+        if let Some(rest) = self.rest().strip_prefix('r') {
+            let hashes = rest.len() - rest.trim_start_matches('#').len();
             self.at += 1 + hashes + 1;
             let close = format!("\"{}", "#".repeat(hashes));
-            self.at += self
-                .rest()
-                .find(&close)
-                .map_or(self.rest().len(), |i| i + close.len());
+            match self.rest().find(&close) {
+                Some(i) => self.at += i + close.len(),
+                None => {
+                    self.at = self.text.len();
+                    self.unclosed.get_or_insert((begin, "text in quotes"));
+                }
+            }
             return;
         }
         let quote = self.peek();
@@ -171,14 +202,19 @@ impl<'a> Scanner<'a> {
                 return;
             }
         }
+        self.unclosed.get_or_insert((begin, "text in quotes"));
     }
 
     fn at_string(&self) -> bool {
         let rest = self.rest();
-        rest.starts_with(['"', '\''])
-            || rest
-                .strip_prefix('r')
-                .is_some_and(|rest| rest.trim_start_matches('#').starts_with('"'))
+        let mut letters = rest.chars();
+        match letters.next() {
+            Some('"') => true,
+            // One character, or one that is written with a backslash; else it is an apostrophe.
+            Some('\'') => letters.next() == Some('\\') || letters.next() == Some('\''),
+            Some('r') => rest[1..].trim_start_matches('#').starts_with('"'),
+            _ => false,
+        }
     }
 
     /// Skips one whole value: a word, a string, a bracket, or a word with a bracket.
@@ -318,11 +354,15 @@ mod tests {
     #[test]
     fn brackets_without_a_partner_are_found_and_those_in_text_are_not_counted() {
         assert_eq!(unbalanced(TEXT), None);
-        let found = |text| unbalanced(text).map(|(at, _)| at);
+        let found = |text| unbalanced(text).map(|found| found.begin);
         assert_eq!(found("(a: [1, 2)"), Some(4));
         assert_eq!(found("(a: 1))"), Some(6));
         assert_eq!(found("(a: \")\", b: ']'"), Some(0));
         assert_eq!(found("(over: 1) // ("), None);
+        assert_eq!(found("(a: \"b, c: (1)"), Some(4));
+        assert_eq!(found("(a: r#\"b\", c: (1))"), Some(4));
+        assert_eq!(found("(a: 1, /* b /* c */ d)"), Some(7));
+        assert_eq!(found("(a: Bob's cloth)"), None);
     }
 
     #[test]
