@@ -32,7 +32,8 @@
 //! # Ok::<(), ScenarioError>(())
 //! ```
 //!
-//! Papers are cited by a letter: **D** dyeing by diffusion and adsorption (IIEEJ 43(3), 2014).
+//! Papers are cited by a letter: **D** dyeing by diffusion and adsorption (J. IIEEJ 43(3), 2014),
+//! **B** batik by diffusion (2016). `docs/model.md` has the formulas and what was chosen.
 
 pub mod adsorption;
 pub mod chance;

@@ -2,7 +2,7 @@
 //! cover of the cloth (model section 3).
 //!
 //! Supply brings the cloth to what is demanded **at this moment**: what is given once is given
-//! once, and what is kept is kept at one concentration, whatever the order of the scenario. Run
+//! once, and what is kept is kept at one concentration, the later hold's where two overlap. Run
 //! twice at the same moment, it supplies nothing the second time. So it runs at the beginning of
 //! every (split) step, and again before a frame is taken, and neither the frames nor their number
 //! change the process. Only a bath takes time, and runs with the steps alone.
