@@ -8,6 +8,8 @@ mod grid;
 mod weave;
 mod yarns;
 
+use std::ops::Deref;
+
 use bevy::prelude::*;
 use rayon::prelude::*;
 
@@ -42,6 +44,17 @@ fn prepare(mut commands: Commands, experiment: Res<TheExperiment>) {
 pub struct Cloth {
     /// Its size in cells.
     pub grid: Grid,
+    /// What it is woven of.
+    pub parts: Parts,
+    /// V_u = P·V_max·(1−B), the most free dye a cell holds, with V_max = 1 (eq 9).
+    pub capacity_free: Vec<f32>,
+    /// V_d = (1−P)·V_max, the most dye the fibre of a cell binds; 0 in gaps (eq 6).
+    pub capacity_bound: Vec<f32>,
+}
+
+/// What a cloth is woven of.
+#[derive(Debug, Clone)]
+pub struct Parts {
     /// Side of a cell Δd, mm.
     pub cell_mm: f64,
     /// The yarns that run down, in the warp layer.
@@ -54,31 +67,18 @@ pub struct Cloth {
     pub gap_porosity: [f64; 2],
     /// How far every place is squeezed: the volume ratio B of paper D eq 9, for both layers.
     pub resist: Raster,
-    /// V_u = P·V_max·(1−B), the most free dye a cell holds, with V_max = 1 (eq 9).
-    pub capacity_free: Vec<f32>,
-    /// V_d = (1−P)·V_max, the most dye the fibre of a cell binds; 0 in gaps (eq 6).
-    pub capacity_bound: Vec<f32>,
+}
+
+impl Deref for Cloth {
+    type Target = Parts;
+
+    fn deref(&self) -> &Parts {
+        &self.parts
+    }
 }
 
 /// A cell with less room than this holds no liquid at all: its inverse must still be a number.
 const SHUT: f64 = 1e-9;
-
-/// What a cloth is assembled of; see the fields of [`Cloth`].
-#[derive(Debug, Clone)]
-pub struct Parts {
-    /// Side of a cell Δd, mm.
-    pub cell_mm: f64,
-    /// The yarns that run down.
-    pub warp: Yarns,
-    /// The yarns that run across.
-    pub weft: Yarns,
-    /// Which yarn is on top at every crossing.
-    pub weave: WeaveMatrix,
-    /// Porosity of the gaps in the weft layer and in the warp layer.
-    pub gap_porosity: [f64; 2],
-    /// The volume ratio B of every place.
-    pub resist: Raster,
-}
 
 impl Cloth {
     /// Weaves the cloth of a scenario and ties `resist` around it.
@@ -107,25 +107,12 @@ impl Cloth {
 
     /// Assembles a cloth of yarns that are already laid; the resist gives its size.
     pub fn assemble(parts: Parts) -> Self {
-        let Parts {
-            cell_mm,
-            warp,
-            weft,
-            weave,
-            gap_porosity,
-            resist,
-        } = parts;
         let mut cloth = Cloth {
             grid: Grid {
-                nx: resist.nx,
-                ny: resist.ny,
+                nx: parts.resist.nx,
+                ny: parts.resist.ny,
             },
-            cell_mm,
-            warp,
-            weft,
-            weave,
-            gap_porosity,
-            resist,
+            parts,
             capacity_free: Vec::new(),
             capacity_bound: Vec::new(),
         };
