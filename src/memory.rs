@@ -86,7 +86,8 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
         .map(|pattern| pattern.rasters_at_once())
         .max()
         .unwrap_or(0);
-    // A held cell is listed with its place and dose: while it lasts, for its end, and among all.
+    // A held cell is listed with its place and dose: in its hold, for its end, among all that are
+    // held, and twice over while those are sorted out.
     let held = 5 * 8 * scenario.supply.len() as u128;
     // Images are kept as rasters beside the ones that are drawn.
     let every = scenario.patterns();

@@ -256,7 +256,8 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
     commands.insert_resource(supplies);
 }
 
-/// The cells of both layers that a shape reaches, each with `most` times the value of the shape. Cells that hold no liquid take no part.
+/// The cells of both layers that a shape reaches, each with `most` times the value of the shape.
+/// Cells that hold no liquid take no part.
 fn reached(shape: &Raster, most: f32, cloth: &Cloth) -> Vec<Cell> {
     let layer = shape.values.len();
     (0..2 * layer)

@@ -62,9 +62,7 @@ impl FreeDye {
         self.carry[i] = 0.0;
         f64::from(concentration) - before
     }
-}
 
-impl FreeDye {
     /// Adds to the concentration of a cell; returns by how much it grew, to be booked in the ledger.
     pub fn grow(&mut self, i: usize, change: f32) -> f64 {
         let before = f64::from(self.concentration[i]) + f64::from(self.carry[i]);

@@ -63,8 +63,8 @@ pub struct Recording {
 
 /// Runs an experiment and records it.
 ///
-/// `go_on` is told the step after every step, and asked whether to go on; a recording that is
-/// stopped is shorter, and valid.
+/// `go_on` is told the step before every (split) step, and asked whether to go on; a recording that
+/// is stopped is shorter, and valid.
 ///
 /// # Errors
 /// A [`RecordError`]; nothing is written where the options themselves are wrong.
