@@ -34,14 +34,12 @@ impl Plugin for BleachingPlugin {
 fn bleach(
     bleaching: Res<Bleaching>,
     clock: Res<ProcessClock>,
-    conductances: Res<Conductances>,
     cloth: Res<Cloth>,
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
-    // A step may be split: this runs once for every part of it.
-    let hours = clock.step_h / f64::from(conductances.splits);
-    let stays = (1.0 - bleaching.per_hour * hours) as f32;
+    // One run of this may cover many steps, or a part of one.
+    let stays = (1.0 - bleaching.per_hour * clock.stride_hours()) as f32;
     for i in 0..dye.concentration.len() {
         let faded = dye.concentration[i] * stays;
         let grown = dye.bring(i, faded);

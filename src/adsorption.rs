@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::diffusion::{Conductances, FreeDye, add};
-use crate::scenario::{AdsorptionSpec, Isotherm, Scenario};
-use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, TheExperiment};
+use crate::scenario::{AdsorptionSpec, Isotherm, Scenario, Solver};
+use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, ProcessClock, TheExperiment};
 
 /// Adsorption of dye by fibre.
 pub struct AdsorptionPlugin;
@@ -23,7 +23,8 @@ impl Plugin for AdsorptionPlugin {
                 adsorption
                     .in_set(DyeSet::Adsorption)
                     .run_if(|experiment: Res<TheExperiment>| {
-                        experiment.scenario.adsorption.is_some()
+                        let scenario = &experiment.scenario;
+                        scenario.adsorption.is_some() && scenario.solver() == Solver::Explicit
                     }),
             );
     }
@@ -35,18 +36,17 @@ impl Plugin for AdsorptionPlugin {
 pub struct BoundDye {
     /// The amounts.
     pub amount: Vec<f32>,
-    /// What rounding has left over in each cell: it holds `amount + carry`.
+    /// What rounding has left over in each cell: it holds `amount + carry`. Empty where the
+    /// accelerated solver needs none.
     pub carry: Vec<f32>,
 }
 
 impl BoundDye {
     /// The bound dye in the whole cloth, in cell volumes.
     pub fn total(&self) -> f64 {
-        let exactly = self.amount.iter().zip(&self.carry);
         // Not `sum`: the sum of nothing would be −0.
-        exactly.fold(0.0, |sum, (a, carry)| {
-            sum + f64::from(*a) + f64::from(*carry)
-        })
+        let sum = |of: &[f32]| of.iter().fold(0.0, |sum, a| sum + f64::from(*a));
+        sum(&self.amount) + sum(&self.carry)
     }
 
     /// The bound dye of one cell.
@@ -237,13 +237,17 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
     };
     commands.insert_resource(BoundDye {
         amount: vec![0.0; cells],
-        carry: vec![0.0; cells],
+        carry: match experiment.scenario.solver() {
+            Solver::Explicit => vec![0.0; cells],
+            Solver::Accelerated => Vec::new(),
+        },
     });
 }
 
 fn adsorption(
     mut free: ResMut<FreeDye>,
     mut bound: ResMut<BoundDye>,
+    clock: Res<ProcessClock>,
     cloth: Res<Cloth>,
     conductances: Res<Conductances>,
     experiment: Res<TheExperiment>,
@@ -251,7 +255,7 @@ fn adsorption(
     let Some(spec) = &experiment.scenario.adsorption else {
         return;
     };
-    let share = share_a_step(spec, &experiment.scenario) / f64::from(conductances.splits);
+    let share = share_a_step(spec, &experiment.scenario) / f64::from(clock.splits);
     step(
         spec.isotherm,
         share as f32,

@@ -14,14 +14,14 @@ use std::sync::Arc;
 use bevy::ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor};
 use bevy::prelude::*;
 
-use crate::diffusion::Conductances;
 use crate::scenario::Experiment;
 
 /// Builds the cloth and everything that the stages keep. Runs once.
 #[derive(ScheduleLabel, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Prepare;
 
-/// Advances the process by one step, or by one part of it where [`Conductances::splits`] says so.
+/// Advances the process by [`ProcessClock::stride`] steps, or by one part of a step where
+/// [`ProcessClock::splits`] says so.
 #[derive(ScheduleLabel, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DyeStep;
 
@@ -83,6 +83,15 @@ pub struct ProcessClock {
     pub step: u64,
     /// Parts of the running step done; 0 between steps.
     pub part: u32,
+    /// Into how many parts a step is split; 1 unless the explicit solver would be unstable.
+    pub splits: u32,
+    /// Into how many the explicit solver would have to split it, whichever solver runs.
+    pub splits_if_explicit: u32,
+    /// Steps that this run of [`DyeStep`] covers: 1, or as many as the accelerated solver can show
+    /// at once.
+    pub stride: u64,
+    /// The step up to which the process is to go now. No run of [`DyeStep`] goes beyond.
+    pub until: u64,
     /// Δt, the length of a step in hours.
     pub step_h: f64,
 }
@@ -91,6 +100,11 @@ impl ProcessClock {
     /// Hours of dyeing done.
     pub fn hours(&self) -> f64 {
         self.step as f64 * self.step_h
+    }
+
+    /// Hours that this run of [`DyeStep`] covers.
+    pub fn stride_hours(&self) -> f64 {
+        self.stride as f64 * self.step_h / f64::from(self.splits)
     }
 }
 
@@ -148,15 +162,19 @@ fn start_clock(mut commands: Commands, experiment: Res<TheExperiment>) {
     commands.insert_resource(ProcessClock {
         step: 0,
         part: 0,
+        splits: 1,
+        splits_if_explicit: 1,
+        stride: 1,
+        until: 0,
         step_h: experiment.scenario.process.step_h,
     });
 }
 
-fn tick(mut clock: ResMut<ProcessClock>, conductances: Res<Conductances>) {
+fn tick(mut clock: ResMut<ProcessClock>) {
     clock.part += 1;
-    if clock.part >= conductances.splits {
+    if clock.part >= clock.splits {
         clock.part = 0;
-        clock.step += 1;
+        clock.step += clock.stride;
     }
 }
 
@@ -165,6 +183,7 @@ fn tick(mut clock: ResMut<ProcessClock>, conductances: Res<Conductances>) {
 ///
 /// Returns whether the step was reached.
 pub fn advance_to(world: &mut World, step: u64, mut go_on: impl FnMut(u64) -> bool) -> bool {
+    world.resource_mut::<ProcessClock>().until = step;
     let reached = world.try_schedule_scope(DyeStep, |world, schedule| {
         loop {
             let now = world.resource::<ProcessClock>().step;

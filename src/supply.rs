@@ -7,13 +7,15 @@
 //! every (split) step, and again before a frame is taken, and neither the frames nor their number
 //! change the process. Only a bath takes time, and runs with the steps alone.
 
+use std::borrow::Cow;
+
 use bevy::prelude::*;
 
 use crate::cloth::Cloth;
-use crate::diffusion::{Conductances, FreeDye};
+use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
 use crate::pattern::{Canvas, Raster};
-use crate::scenario::SupplySpec;
+use crate::scenario::{Solver, SupplySpec};
 use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
 };
@@ -24,7 +26,12 @@ pub struct SupplyPlugin;
 impl Plugin for SupplyPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
-            .add_systems(DyeStep, (bring, soak).chain().in_set(DyeSet::Supply))
+            .add_systems(
+                DyeStep,
+                (bring, soak.run_if(there_are_baths))
+                    .chain()
+                    .in_set(DyeSet::Supply),
+            )
             .add_systems(DyeFrame, bring.in_set(FrameSet::Supply));
     }
 }
@@ -44,7 +51,7 @@ pub struct Supplies {
 }
 
 /// A cell's index in a field, and the concentration that is brought to it.
-type Cell = (u32, f32);
+pub type Cell = (u32, f32);
 
 /// Something that is given at one moment.
 #[derive(Debug, Clone)]
@@ -82,13 +89,39 @@ struct Bath {
 
 impl Supplies {
     /// The concentration kept in each cell from a step on; NaN where none is.
-    pub fn held(&mut self, step: u64, cells: usize) -> Vec<f32> {
-        self.find_kept(step);
+    pub fn held(&self, step: u64, cells: usize) -> Vec<f32> {
         let mut held = vec![f32::NAN; cells];
-        for (i, concentration) in &self.kept {
+        for (i, concentration) in self.kept_at(step).iter() {
             held[*i as usize] = *concentration;
         }
         held
+    }
+
+    /// Whether something is still to be done at `step`: dye to be given, or cells to be kept from here
+    /// on or no longer.
+    pub fn changes_at(&self, step: u64) -> bool {
+        let is_due = |event: &Event| event.at <= step;
+        step >= self.kept_until || self.events.get(self.done).is_some_and(is_due)
+    }
+
+    /// The next step after `step` where dye is given or something else is kept.
+    pub fn next_change(&self, step: u64) -> u64 {
+        let events = self.events[self.done..].iter().map(|event| event.at);
+        let later = events.chain([self.kept_until]).filter(|at| *at > step);
+        later.min().unwrap_or(u64::MAX)
+    }
+
+    /// The cells that are kept from `step` on, and the concentrations.
+    pub fn kept_at(&self, step: u64) -> Cow<'_, [Cell]> {
+        if step < self.kept_until {
+            return Cow::Borrowed(&self.kept);
+        }
+        let is_on = |hold: &Hold| hold.from <= step && step < hold.until;
+        Cow::Owned(
+            effective(&self.holds, is_on)
+                .map(|(cell, _)| cell)
+                .collect(),
+        )
     }
 
     /// Brings free dye to what is demanded at `step`, and books what that took.
@@ -144,10 +177,7 @@ impl Supplies {
         if step < self.kept_until {
             return;
         }
-        let is_on = |hold: &Hold| hold.from <= step && step < hold.until;
-        self.kept = effective(&self.holds, is_on)
-            .map(|(cell, _)| cell)
-            .collect();
+        self.kept = self.kept_at(step).into_owned();
         let changes = self.holds.iter().flat_map(|hold| [hold.from, hold.until]);
         self.kept_until = changes
             .filter(|change| *change > step)
@@ -192,27 +222,29 @@ fn bring(
     mut supplies: ResMut<Supplies>,
     clock: Res<ProcessClock>,
     cloth: Res<Cloth>,
+    experiment: Res<TheExperiment>,
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
+    // The accelerated solver itself keeps what is kept, until something changes.
+    if experiment.scenario.solver() == Solver::Accelerated && !supplies.changes_at(clock.step) {
+        return;
+    }
     supplies.bring(clock.step, &cloth, &mut dye, &mut ledger);
+}
+
+fn there_are_baths(supplies: Res<Supplies>) -> bool {
+    !supplies.baths.is_empty()
 }
 
 fn soak(
     supplies: Res<Supplies>,
     clock: Res<ProcessClock>,
-    conductances: Res<Conductances>,
     cloth: Res<Cloth>,
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
-    supplies.soak(
-        clock.step,
-        conductances.splits,
-        &cloth,
-        &mut dye,
-        &mut ledger,
-    );
+    supplies.soak(clock.step, clock.splits, &cloth, &mut dye, &mut ledger);
 }
 
 fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {

@@ -31,7 +31,7 @@ fn dye_is_conserved_over_5000_steps_of_every_bundled_scenario() {
 }
 
 /// A cloth as uneven as can be: porosity from 0.01 to 1, resist from 0 to 0.99, cell by cell.
-fn wild_cloth(seed: u64, more: &str) -> Experiment {
+fn wild_cloth(seed: u64, solver: &str, more: &str) -> Experiment {
     experiment(&format!(
         "(
             title: \"wild\", seed: {seed},
@@ -46,7 +46,7 @@ fn wild_cloth(seed: u64, more: &str) -> Experiment {
                 Dose(shape: Noise(grain: Cells(2)), dose: 0.7, at: Steps(20)),
             ],
             resist: Strength(of: Noise(grain: Cells(1.5), octaves: 1), by: 0.99),
-            process: (duration: Steps(400)),
+            process: (duration: Steps(400), solver: {solver}),
             {more}
         )"
     ))
@@ -61,19 +61,20 @@ fn concentration_stays_between_0_and_1_at_every_step_on_wild_cloth() {
         "adsorption: (rate: 0.3, isotherm: Freundlich(k: 2.0, b: 0.3)), dye: (equilibrium: 0.5)",
         "adsorption: (rate: 1.0, isotherm: Partition(k: 1e6))",
     ];
-    for (seed, more) in more.iter().enumerate() {
-        let mut app = dyeing_app(wild_cloth(seed as u64, more));
-        for step in 0..=400 {
-            assert!(advance_to(app.world_mut(), step, |_| true));
-            for (i, c) in concentration(&app).iter().enumerate() {
-                assert!(
-                    (0.0..=1.0).contains(c),
-                    "{more}: step {step}, cell {i}: {c}"
-                );
+    for solver in ["Explicit", "Accelerated"] {
+        for (seed, more) in more.iter().enumerate() {
+            let mut app = dyeing_app(wild_cloth(seed as u64, solver, more));
+            for step in 0..=400 {
+                go_on(&mut app, step);
+                for (i, c) in concentration(&app).iter().enumerate() {
+                    assert!(
+                        (0.0..=1.0).contains(c),
+                        "{solver}, {more}: step {step}, cell {i}: {c}"
+                    );
+                }
+                assert_balanced(&format!("{solver}, {more}"), &ledger(&app));
             }
         }
-        look(app.world_mut());
-        assert_balanced(more, &ledger(&app));
     }
 }
 
@@ -86,7 +87,7 @@ fn one_way_adsorption_never_passes_the_fibre_or_the_isotherm_and_never_goes_back
         "Langmuir(kl: 20.0)",
     ] {
         let more = format!("adsorption: (rate: 0.2, isotherm: {isotherm})");
-        let mut app = dyeing_app(wild_cloth(5, &more));
+        let mut app = dyeing_app(wild_cloth(5, "Explicit", &more));
         let cloth = app.world().resource::<Cloth>().clone();
         let spec = app
             .world()
@@ -113,6 +114,35 @@ fn one_way_adsorption_never_passes_the_fibre_or_the_isotherm_and_never_goes_back
                     gained == 0.0 || *after <= limit,
                     "{isotherm}: {after} > {limit}"
                 );
+            }
+            before.copy_from_slice(bound(&app));
+        }
+        assert!(
+            before.iter().any(|a| *a > 0.01),
+            "{isotherm}: nothing was bound"
+        );
+    }
+}
+
+#[test]
+fn fibre_is_never_overfull_and_never_gives_dye_back_between_the_frames_of_the_accelerated_solver() {
+    for isotherm in [
+        "Partition(k: 0.4)",
+        "Freundlich(k: 0.5, b: 0.5)",
+        "Freundlich(k: 0.3, b: 0.2)",
+        "Langmuir(kl: 20.0)",
+        "Saturating(speed: 0.1, most: 0.3)",
+    ] {
+        let more = format!("adsorption: (rate: 0.2, isotherm: {isotherm})");
+        let mut app = dyeing_app(wild_cloth(5, "Accelerated", &more));
+        let cloth = app.world().resource::<Cloth>().clone();
+        let mut before = bound(&app).to_vec();
+        for step in (0..=400).step_by(7) {
+            go_on(&mut app, step);
+            for (i, after) in bound(&app).iter().enumerate() {
+                assert!(*after >= before[i], "{isotherm}: dye went back");
+                let full = cloth.capacity_bound[i] * (1.0 + 1e-6);
+                assert!(*after <= full, "{isotherm}: fibre is overfull");
             }
             before.copy_from_slice(bound(&app));
         }

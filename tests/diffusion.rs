@@ -26,7 +26,7 @@ fn error_against_the_gaussian(cell_mm: f64) -> f64 {
                 warp: (width: Mm({side_mm}), gap: Cells(0)), paths: (dive: 1.0),
             ),
             supply: [],
-            process: (duration: Hours({hours}), step_h: {step_h}),
+            process: (duration: Hours({hours}), step_h: {step_h}, solver: Explicit),
         )"
     )));
     let steps = (hours / step_h).round() as u64;
@@ -297,7 +297,7 @@ fn the_solver_agrees_with_an_independent_one_in_double_precision() {
                     Bath(shape: Ramp(), dose: 0.3, speed: 0.001, from: Steps(80), until: Steps(900)),
                 ],
                 resist: Strength(of: Blur(of: Rays(count: 5), radius: Cells(2)), by: 0.95),
-                process: (duration: Steps(2000), step_h: {step_h}),
+                process: (duration: Steps(2000), step_h: {step_h}, solver: Explicit),
                 {more}
             )"
         ));
@@ -327,7 +327,7 @@ fn a_step_too_long_to_be_stable_is_split_and_ends_near_the_fine_one() {
                     title: \"coarse\",
                     cloth: (size: (Cells(40), Cells(40)), warp: (porosity: 1.0)),
                     supply: [Hold(shape: Disc(diameter: Cells(10)))],
-                    process: (duration: Hours(0.5), step_h: {step_h}),
+                    process: (duration: Hours(0.5), step_h: {step_h}, solver: Explicit),
                 )"
             )),
             (0.5 / step_h).round() as u64,
@@ -354,7 +354,7 @@ fn frames_do_not_change_the_process_nor_the_ledger() {
                 Bath(shape: Ramp(), speed: 0.01),
             ],
             adsorption: (),
-            process: (duration: Steps(40)),
+            process: (duration: Steps(40), solver: Explicit),
         )",
     );
     let run = |looks: &[u64]| {

@@ -46,7 +46,7 @@ fn recorded(folder: &Path) {
         ),
         supply: [Hold(shape: Disc(diameter: Cells(9)), dose: 0.9, until: Steps(40))],
         resist: Strength(of: Noise(grain: Cells(5)), by: 0.9),
-        process: (duration: Steps(80)),
+        process: (duration: Steps(80), solver: Explicit),
         record: (frames: 3),
     )";
     let experiment = Experiment::parse("fields", Origin::Memory, text.into()).unwrap();

@@ -2,18 +2,24 @@
 //!
 //! Owns the free dye ([`FreeDye`]) and what the faces let through ([`Conductances`]).
 
+mod accelerated;
 mod explicit;
 mod faces;
 
 use bevy::prelude::*;
 use rayon::prelude::*;
 
+pub use accelerated::{Chemistry, Leap};
 pub(crate) use explicit::add;
 pub use explicit::step;
 pub use faces::Faces;
 
+use crate::adsorption::BoundDye;
 use crate::cloth::{Cloth, Grid, Layer};
-use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, TheExperiment};
+use crate::ledger::Ledger;
+use crate::scenario::Solver;
+use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, ProcessClock, TheExperiment};
+use crate::supply::Supplies;
 
 /// Diffusion of free dye through the pores.
 pub struct DiffusionPlugin;
@@ -21,7 +27,15 @@ pub struct DiffusionPlugin;
 impl Plugin for DiffusionPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
-            .add_systems(DyeStep, diffusion.in_set(DyeSet::Diffusion));
+            .add_systems(
+                DyeStep,
+                (
+                    one_step.run_if(resource_exists::<Conductances>),
+                    leap.run_if(resource_exists::<Leap>),
+                )
+                    .chain()
+                    .in_set(DyeSet::Diffusion),
+            );
     }
 }
 
@@ -30,44 +44,61 @@ impl Plugin for DiffusionPlugin {
 pub struct FreeDye {
     /// The concentration at this moment.
     pub concentration: Vec<f32>,
-    /// What rounding has left over in each cell: it holds `concentration + carry`.
+    /// What rounding has left over in each cell: it holds `concentration + carry`. Only the explicit
+    /// solver, whose changes are smaller than the last bit, keeps it; else it is empty.
     pub carry: Vec<f32>,
-    /// Where the next step is computed.
+    /// Where the explicit solver computes the next step.
     next: Vec<f32>,
 }
 
 impl FreeDye {
-    /// Clean water in every cell.
-    pub fn clean(grid: Grid) -> Self {
+    /// Clean water in every cell, for a solver.
+    pub fn clean(grid: Grid, solver: Solver) -> Self {
+        let kept = match solver {
+            Solver::Explicit => grid.len(),
+            Solver::Accelerated => 0,
+        };
         FreeDye {
             concentration: vec![0.0; grid.len()],
-            carry: vec![0.0; grid.len()],
-            next: vec![0.0; grid.len()],
+            carry: vec![0.0; kept],
+            next: vec![0.0; kept],
         }
+    }
+
+    /// What a cell holds, to the last bit.
+    fn exactly(&self, i: usize) -> f64 {
+        let carry = self.carry.get(i).copied().unwrap_or(0.0);
+        f64::from(self.concentration[i]) + f64::from(carry)
     }
 
     /// The free dye in the whole cloth: Σ φ = Σ c·V_u, in cell volumes.
     pub fn total(&self, cloth: &Cloth) -> f64 {
-        let exactly = self.concentration.iter().zip(&self.carry);
-        exactly
-            .zip(&cloth.capacity_free)
-            .map(|((c, carry), v_u)| (f64::from(*c) + f64::from(*carry)) * f64::from(*v_u))
+        let cells = cloth.capacity_free.iter().enumerate();
+        cells
+            .map(|(i, v_u)| self.exactly(i) * f64::from(*v_u))
             .sum()
     }
 
     /// Brings a cell to a concentration; returns by how much it grew, to be booked in the ledger.
     pub fn bring(&mut self, i: usize, concentration: f32) -> f64 {
-        let before = f64::from(self.concentration[i]) + f64::from(self.carry[i]);
+        let before = self.exactly(i);
         self.concentration[i] = concentration;
-        self.carry[i] = 0.0;
+        if let Some(carry) = self.carry.get_mut(i) {
+            *carry = 0.0;
+        }
         f64::from(concentration) - before
     }
 
     /// Adds to the concentration of a cell; returns by how much it grew, to be booked in the ledger.
     pub fn grow(&mut self, i: usize, change: f32) -> f64 {
-        let before = f64::from(self.concentration[i]) + f64::from(self.carry[i]);
-        (self.concentration[i], self.carry[i]) = add(self.concentration[i], self.carry[i], change);
-        f64::from(self.concentration[i]) + f64::from(self.carry[i]) - before
+        let before = self.exactly(i);
+        let carry = self.carry.get(i).copied().unwrap_or(0.0);
+        let (concentration, carry) = add(self.concentration[i], carry, change);
+        self.concentration[i] = concentration;
+        if let Some(kept) = self.carry.get_mut(i) {
+            *kept = carry;
+        }
+        self.exactly(i) - before
     }
 }
 
@@ -180,26 +211,48 @@ impl Conductances {
     }
 }
 
-fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
+fn prepare(
+    mut commands: Commands,
+    mut clock: ResMut<ProcessClock>,
+    cloth: Res<Cloth>,
+    experiment: Res<TheExperiment>,
+) {
     let scenario = &experiment.scenario;
     let faces = Faces {
         cloth: &cloth,
         paths: &scenario.cloth.paths,
         in_water: scenario.dye.diffusivity.in_water(),
     };
-    let binding = scenario.adsorption.map_or(0.0, |adsorption| {
-        crate::adsorption::share_a_step(&adsorption, scenario)
+    let binding = scenario.adsorption.map(|adsorption| {
+        let share = crate::adsorption::share_a_step(&adsorption, scenario);
+        (adsorption.isotherm, share)
     });
-    commands.insert_resource(Conductances::new(
-        &cloth,
-        &faces,
-        scenario.process.step_h,
-        binding,
-    ));
-    commands.insert_resource(FreeDye::clean(cloth.grid));
+    let step_h = scenario.process.step_h;
+    let solver = scenario.solver();
+    match solver {
+        Solver::Explicit => {
+            let most = binding.map_or(0.0, |(_, share)| share);
+            let conductances = Conductances::new(&cloth, &faces, step_h, most);
+            clock.splits = conductances.splits;
+            clock.splits_if_explicit = conductances.splits;
+            commands.insert_resource(conductances);
+        }
+        Solver::Accelerated => {
+            let chemistry = Chemistry {
+                equilibrium: scenario.dye.equilibrium,
+                binding,
+                tolerance: scenario.process.tolerance,
+            };
+            let leap = Leap::new(&cloth, &faces, step_h, chemistry);
+            clock.splits_if_explicit = leap.splits();
+            commands.insert_resource(leap);
+        }
+    }
+    commands.insert_resource(FreeDye::clean(cloth.grid, solver));
 }
 
-fn diffusion(
+/// One step of the explicit solver.
+fn one_step(
     mut dye: ResMut<FreeDye>,
     conductances: Res<Conductances>,
     experiment: Res<TheExperiment>,
@@ -212,4 +265,35 @@ fn diffusion(
     let equilibrium = experiment.scenario.dye.equilibrium;
     explicit::step(&conductances, equilibrium, concentration, carry, next);
     std::mem::swap(concentration, next);
+}
+
+/// As many steps as the clock asks for and one leap covers. What binds meanwhile binds here, for
+/// it belongs to the same change.
+fn leap(
+    mut leap: ResMut<Leap>,
+    mut clock: ResMut<ProcessClock>,
+    mut dye: ResMut<FreeDye>,
+    mut bound: ResMut<BoundDye>,
+    supplies: Res<Supplies>,
+    mut ledger: ResMut<Ledger>,
+    experiment: Res<TheExperiment>,
+) {
+    // Whoever else changed the dye (supply, a stage of one's own) began a new process.
+    let changed = dye.is_changed() || bound.is_changed() || supplies.is_changed();
+    if changed || !leap.covers(clock.step) {
+        let kept = supplies.kept_at(clock.step);
+        let kept = kept.iter().map(|(i, _)| *i as usize);
+        leap.begin(clock.step, &dye.concentration, &bound.amount, kept);
+    }
+    if leap.span().end == clock.step {
+        // The next change of supply ends a leap, and so does the end of the process.
+        let end = experiment.scenario.process.steps();
+        let end = if clock.step < end { end } else { u64::MAX };
+        leap.leap(supplies.next_change(clock.step).min(end));
+    }
+    let shown = leap.span().end.min(clock.until);
+    clock.stride = shown - clock.step;
+    let dye = &mut *dye;
+    let supplied = leap.show(shown, &mut dye.concentration, &mut bound.amount);
+    ledger.book(supplied);
 }

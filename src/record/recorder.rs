@@ -14,7 +14,7 @@ use super::sheet::Sheet;
 use super::writer::{self, Job, Writer};
 use crate::adsorption::BoundDye;
 use crate::cloth::Cloth;
-use crate::diffusion::{Conductances, FreeDye};
+use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
 use crate::scenario::units::rounded;
 use crate::scenario::{Experiment, Origin};
@@ -153,7 +153,6 @@ pub(super) struct Dyed<'w> {
     pub cloth: Res<'w, Cloth>,
     pub free: Res<'w, FreeDye>,
     pub bound: Res<'w, BoundDye>,
-    pub conductances: Res<'w, Conductances>,
     pub supplies: ResMut<'w, Supplies>,
 }
 
@@ -186,7 +185,7 @@ fn keep(
                 fields::write_cloth(
                     &dyed.cloth,
                     &dyed.experiment,
-                    dyed.conductances.splits,
+                    clock.splits_if_explicit,
                     file,
                 )
             });

@@ -24,7 +24,7 @@ pub use fabric::{ClothSpec, Paths, YarnSpec};
 pub use images::Images;
 pub use library::{Bundled, bundled, names as bundled_names};
 pub use look::{Colours, LARGEST_SCALE, LookSpec, Show, YarnLook};
-pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, SupplySpec};
+pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, Solver, SupplySpec};
 pub use units::{Length, Time};
 
 use crate::pattern::Pattern;
@@ -100,6 +100,17 @@ impl Scenario {
             units::rounded(MOST_SPLITS / fastest, 3),
             self.process.step_h
         )))
+    }
+
+    /// The solver that computes the process. A bath, which takes a part of what is missing in every
+    /// step, is for the explicit one alone.
+    pub fn solver(&self) -> Solver {
+        let is_bath = |supply: &SupplySpec| matches!(supply, SupplySpec::Bath { .. });
+        if self.supply.iter().any(is_bath) {
+            Solver::Explicit
+        } else {
+            self.process.solver
+        }
     }
 
     /// Every pattern that the scenario names, each with its place.

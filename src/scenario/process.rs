@@ -131,6 +131,28 @@ pub struct ProcessSpec {
     /// Δt, the length of one step in hours.
     #[serde(default = "default_step_h")]
     pub step_h: f64,
+    /// How the process is computed.
+    #[serde(default)]
+    pub solver: Solver,
+    /// The largest error that the accelerated solver may make in the concentration of any cell in
+    /// one of its leaps, as estimated, as a share of full scale.
+    #[serde(default = "default_tolerance")]
+    pub tolerance: f64,
+}
+
+/// How the process is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Solver {
+    /// In leaps over many steps, as long as the tolerance allows.
+    #[default]
+    Accelerated,
+    /// One step at a time, as in paper D: the reference.
+    Explicit,
+}
+
+/// So small that no pixel differs visibly.
+fn default_tolerance() -> f64 {
+    0.004
 }
 
 /// Δt of paper D's Table 1, h.
@@ -146,6 +168,7 @@ impl ProcessSpec {
 
     pub(super) fn check(&self, at: &Checker) -> Result<(), Problem> {
         at.field("step_h").within(self.step_h, 1e-9..=24.0)?;
+        at.field("tolerance").within(self.tolerance, 1e-6..=0.1)?;
         self.duration.check(&at.field("duration"), self.step_h)
     }
 }

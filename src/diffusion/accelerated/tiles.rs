@@ -1,0 +1,204 @@
+//! Many stages in one pass through memory.
+//!
+//! A stage of the whole cloth reads and writes far more than the processor's own caches hold. But a
+//! row of one stage needs only three rows of the stage before. So the cloth is cut into tiles of
+//! rows, and within a tile the stages follow each other row by row like a wave: stage 1 of row y,
+//! stage 2 of row y − 1, … [`PASS`] stages are done with rows that are still in the cache.
+//!
+//! At its edges a tile cannot go on alone, and computes one row less in every stage; the wedges that
+//! are left between tiles follow in a second round. Wide cloth is taken strip by strip, each
+//! leaning one block to the left in every stage. Every row is computed once and from the same
+//! numbers whatever the tiles, the strips and the threads, so they do not change a single bit.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::lanes::Cells;
+
+/// Stages of one pass.
+pub const PASS: usize = 12;
+
+/// Blocks in a strip: with [`PASS`] stages they fill about a megabyte.
+const STRIP: usize = 64;
+
+/// The values of one stage.
+pub struct Level<'a> {
+    /// Change of concentration, or concentration, row by row.
+    pub free: &'a mut [Cells],
+    /// Change of bound dye; empty where none binds.
+    pub bound: &'a mut [Cells],
+    /// What flowed into each of the held cells.
+    pub held: &'a mut [f64],
+}
+
+/// Rows of two stages that follow each other.
+pub struct Rows<'a> {
+    /// The first row of these.
+    pub top: usize,
+    /// The levels of even and of odd stages.
+    pub levels: [Level<'a>; 2],
+}
+
+/// What is done with each row of each stage.
+pub trait Work: Sync {
+    /// Blocks in a row.
+    fn blocks(&self) -> usize;
+
+    /// Rows in all.
+    fn rows(&self) -> usize;
+
+    /// Held cells above a row.
+    fn held_above(&self, y: usize) -> usize;
+
+    /// Computes `blocks` of row `y` for one stage, from `from` into `into`.
+    fn row(&self, task: Task, from: &Level, into: &mut Level);
+}
+
+/// One row of one stage.
+pub struct Task<'a> {
+    /// The stage of the pass, from 0.
+    pub stage: usize,
+    /// The row of the cloth.
+    pub y: usize,
+    /// The first row that the levels hold.
+    pub top: usize,
+    /// Which blocks.
+    pub blocks: Range<usize>,
+    /// Whether this is the first row of its stage: `south` must be found anew.
+    pub first: bool,
+    /// What flows south between rows of this stage.
+    pub south: &'a mut [Cells],
+}
+
+/// Does `stages` (at most [`PASS`]) stages of work. The first reads `levels[0]`.
+pub fn pass(work: &impl Work, stages: usize, levels: [Level; 2]) {
+    let rows = work.rows();
+    // A tile has room for its two slopes.
+    let most = rows / (2 * PASS + 2);
+    let tiles = most.min(4 * rayon::current_num_threads()).max(1);
+    let bounds: Vec<usize> = (0..=tiles).map(|i| i * rows / tiles).collect();
+    let middles: Vec<usize> = bounds.windows(2).map(|b| (b[0] + b[1]) / 2).collect();
+    let mut whole = Rows { top: 0, levels };
+    split(work, whole.again(), &bounds)
+        .into_par_iter()
+        .zip(bounds.par_windows(2))
+        .for_each(|(tile, ends)| {
+            sweep(work, stages, tile, |stage| {
+                let top = if ends[0] == 0 { 0 } else { ends[0] + stage };
+                let end = if ends[1] == rows {
+                    rows
+                } else {
+                    ends[1] - stage
+                };
+                top..end
+            });
+        });
+    // The wedges: between the middles of neighbouring tiles.
+    let mut cuts = vec![0];
+    cuts.extend(&middles);
+    cuts.push(rows);
+    split(work, whole, &cuts)
+        .into_par_iter()
+        .enumerate()
+        .filter(|(i, _)| (1..tiles).contains(i))
+        .for_each(|(i, tile)| {
+            sweep(work, stages, tile, |stage| {
+                bounds[i] - stage..bounds[i] + stage
+            });
+        });
+}
+
+/// Does the stages of one tile; `range` gives the rows of a stage, counted from 1.
+fn sweep(work: &impl Work, stages: usize, rows: Rows, range: impl Fn(usize) -> Range<usize>) {
+    let blocks = work.blocks();
+    let Rows {
+        top,
+        levels: [mut even, mut odd],
+    } = rows;
+    let end = top + even.free.len() / blocks;
+    let mut south = vec![Cells::ZERO; stages * blocks];
+    let strips = blocks.div_ceil(STRIP);
+    let width = blocks.div_ceil(strips);
+    for strip in 0..strips {
+        for front in top + 1..=end + stages {
+            for stage in 1..=stages {
+                let Some(y) = front.checked_sub(stage) else {
+                    continue;
+                };
+                let range = range(stage);
+                if !range.contains(&y) {
+                    continue;
+                }
+                let left = (strip * width).saturating_sub(stage);
+                let right = if strip + 1 == strips {
+                    blocks
+                } else {
+                    ((strip + 1) * width).saturating_sub(stage)
+                };
+                if left >= right {
+                    continue;
+                }
+                let task = Task {
+                    stage: stage - 1,
+                    y,
+                    top,
+                    blocks: left..right,
+                    first: y == range.start,
+                    south: &mut south[(stage - 1) * blocks..][..blocks],
+                };
+                if stage % 2 == 1 {
+                    work.row(task, &even, &mut odd);
+                } else {
+                    work.row(task, &odd, &mut even);
+                }
+            }
+        }
+    }
+}
+
+impl Rows<'_> {
+    /// The same rows for a shorter while.
+    fn again(&mut self) -> Rows<'_> {
+        Rows {
+            top: self.top,
+            levels: self.levels.each_mut().map(|level| Level {
+                free: level.free,
+                bound: level.bound,
+                held: level.held,
+            }),
+        }
+    }
+}
+
+/// Cuts rows apart at `cuts`, which begin with the first row and end after the last.
+fn split<'a>(work: &impl Work, rows: Rows<'a>, cuts: &[usize]) -> Vec<Rows<'a>> {
+    let blocks = work.blocks();
+    let [mut even, mut odd] = rows.levels;
+    let mut take = |from: usize, to: usize| {
+        let held = work.held_above(to) - work.held_above(from);
+        [&mut even, &mut odd].map(|level| {
+            let bound = if level.bound.is_empty() {
+                0
+            } else {
+                (to - from) * blocks
+            };
+            Level {
+                free: take_front(&mut level.free, (to - from) * blocks),
+                bound: take_front(&mut level.bound, bound),
+                held: take_front(&mut level.held, held),
+            }
+        })
+    };
+    let tile = |cut: &[usize]| Rows {
+        top: cut[0],
+        levels: take(cut[0], cut[1]),
+    };
+    cuts.windows(2).map(tile).collect()
+}
+
+fn take_front<'a, T>(rest: &mut &'a mut [T], len: usize) -> &'a mut [T] {
+    let (front, back) = std::mem::take(rest).split_at_mut(len);
+    *rest = back;
+    front
+}
