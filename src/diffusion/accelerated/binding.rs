@@ -159,23 +159,23 @@ impl Binding {
         low + (high - low) * (place - entry as f32)
     }
 
-    /// The growth of bound dye in a kept cell since the beginning: its free dye φ is kept, but for
-    /// `lost`, what flows out of it in a step before supply tops it up.
+    /// The growth of bound dye in a kept cell since the beginning.
     pub fn stage_in_kept(&self, mix: Mix, kept: Kept) -> f32 {
         let Kept {
-            free,
-            lost,
+            moved,
+            moved_first,
             v_d,
             a,
             last,
             before,
         } = kept;
-        let limit = self.isotherm.limit((free - lost).max(0.0), v_d).min(v_d);
-        let rate = |grown: f32| match self.isotherm {
+        let limit = self.isotherm.limit(moved, v_d).min(v_d);
+        let rate = |free: f32, grown: f32| match self.isotherm {
             Isotherm::Saturating { .. } => self.share * (limit - a - grown).max(0.0) * free,
             _ => self.share * free,
         };
-        let grown = mix.mu * last + mix.nu * before + mix.rate * rate(last) + mix.first * rate(0.0);
+        let drive = mix.rate * rate(moved, last) + mix.first * rate(moved_first, 0.0);
+        let grown = mix.mu * last + mix.nu * before + drive;
         grown.min(limit - a).max(0.0)
     }
 
@@ -188,10 +188,10 @@ impl Binding {
 /// A kept cell in one stage.
 #[derive(Debug, Clone, Copy)]
 pub struct Kept {
-    /// φ.
-    pub free: f32,
-    /// What flows out of it in a step.
-    pub lost: f32,
+    /// φ when dye has moved, before supply tops it up: at the last stage.
+    pub moved: f32,
+    /// The same at the beginning of the leap.
+    pub moved_first: f32,
     /// V_d.
     pub v_d: f32,
     /// A at the beginning.
@@ -242,7 +242,9 @@ fn divide(
             let change =
                 mix.mu * (v_u * free + bound) + mix.nu * (v_u * free_before + bound_before) + flow;
             let total = v_u * c + a + change;
-            let drive = share * v_u * (mix.rate * (c + free) + mix.first * c);
+            // Dye binds after it has moved.
+            let (moved, moved_first) = (c + free + at(block.rate.0), c + at(block.rate.1));
+            let drive = share * v_u * (mix.rate * moved + mix.first * moved_first);
             let grown = mix.mu * bound + mix.nu * bound_before + drive;
             let limit = settled(total.max(0.0), v_d).min(v_d);
             let grown = grown.min(limit - a).max(0.0);
@@ -269,7 +271,8 @@ fn saturate(binding: &Binding, mix: Mix, block: Block, (v_u, v_d): (&Cells, &Cel
                 mix.mu * (v_u * free + bound) + mix.nu * (v_u * free_before + bound_before) + flow;
             let total = v_u * c + a + change;
             let rate = |c: f32, grown: f32| speed * (room - grown).max(0.0) * v_u * c;
-            let drive = mix.rate * rate(c + free, bound) + mix.first * rate(c, 0.0);
+            let (moved, moved_first) = (c + free + at(block.rate.0), c + at(block.rate.1));
+            let drive = mix.rate * rate(moved, bound) + mix.first * rate(moved_first, 0.0);
             let grown = mix.mu * bound + mix.nu * bound_before + drive;
             let grown = grown.min(room).min(total - a).max(0.0);
             block.into.1.0[l][i] = if grown > NOTHING { grown } else { 0.0 };

@@ -237,8 +237,8 @@ impl Stages<'_> {
                 binding.stage_in_kept(
                     mix,
                     Kept {
-                        free: v_u * c,
-                        lost: -v_u * rate,
+                        moved: (v_u * (c + rate)).max(0.0),
+                        moved_first: (v_u * (c + cell.rate as f32)).max(0.0),
                         v_d: binding.fibre(cell.block, cell.layer, cell.lane),
                         a: self.begin.1[cell.block].0[cell.layer][cell.lane],
                         last: at(from.bound),
