@@ -12,10 +12,10 @@ use std::borrow::Cow;
 use bevy::prelude::*;
 
 use crate::cloth::Cloth;
-use crate::diffusion::FreeDye;
+use crate::diffusion::{Conductances, FreeDye};
 use crate::ledger::Ledger;
 use crate::pattern::{Canvas, Raster};
-use crate::scenario::{Solver, SupplySpec};
+use crate::scenario::SupplySpec;
 use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
 };
@@ -222,12 +222,12 @@ fn bring(
     mut supplies: ResMut<Supplies>,
     clock: Res<ProcessClock>,
     cloth: Res<Cloth>,
-    experiment: Res<TheExperiment>,
+    single_steps: Option<Res<Conductances>>,
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
-    // The accelerated solver itself keeps what is kept, until something changes.
-    if experiment.scenario.solver() == Solver::Accelerated && !supplies.changes_at(clock.step) {
+    // Where a run covers many steps the solver itself keeps what is kept, until something changes.
+    if single_steps.is_none() && !supplies.changes_at(clock.step) {
         return;
     }
     supplies.bring(clock.step, &cloth, &mut dye, &mut ledger);

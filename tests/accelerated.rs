@@ -41,7 +41,10 @@ fn differences(a: &[f32], b: &[f32]) -> (f64, f64) {
     let difference = |(a, b): (&f32, &f32)| (f64::from(*a) - f64::from(*b)).abs();
     let all = || a.iter().zip(b).map(difference);
     let square: f64 = all().map(|d| d * d).sum();
-    (all().fold(0.0, f64::max), (square / a.len().max(1) as f64).sqrt())
+    (
+        all().fold(0.0, f64::max),
+        (square / a.len().max(1) as f64).sqrt(),
+    )
 }
 
 #[test]

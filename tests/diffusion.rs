@@ -303,7 +303,7 @@ fn the_solver_agrees_with_an_independent_one_in_double_precision() {
         ));
         let mut app = dyeing_app(experiment.clone());
         let cloth = app.world().resource::<Cloth>();
-        let splits = app.world().resource::<Conductances>().splits;
+        let splits = app.world().resource::<ProcessClock>().splits;
         assert_eq!(splits > 1, step_h > 0.001);
         let mut reference = Reference::of(&experiment, cloth, splits);
         for step in [0, 50, 80, 100, 600, 601, 700, 900, 2000] {
@@ -334,8 +334,8 @@ fn a_step_too_long_to_be_stable_is_split_and_ends_near_the_fine_one() {
         )
     };
     let (fine, coarse) = (with_step(0.0001), with_step(0.0125));
-    assert_eq!(fine.world().resource::<Conductances>().splits, 1);
-    assert!(coarse.world().resource::<Conductances>().splits > 40);
+    assert_eq!(fine.world().resource::<ProcessClock>().splits, 1);
+    assert!(coarse.world().resource::<ProcessClock>().splits > 40);
     for (a, b) in concentration(&fine).iter().zip(concentration(&coarse)) {
         assert!((a - b).abs() < 0.01, "{a} and {b}");
     }
@@ -359,7 +359,7 @@ fn frames_do_not_change_the_process_nor_the_ledger() {
     );
     let run = |looks: &[u64]| {
         let mut app = dyeing_app(everything.clone());
-        assert!(app.world().resource::<Conductances>().splits > 1);
+        assert!(app.world().resource::<ProcessClock>().splits > 1);
         for step in looks {
             go_on(&mut app, *step);
             go_on(&mut app, *step);

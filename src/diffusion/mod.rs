@@ -5,6 +5,11 @@
 mod accelerated;
 mod explicit;
 mod faces;
+mod held;
+mod kernel;
+mod lanes;
+mod steps;
+mod tiles;
 
 use bevy::prelude::*;
 use rayon::prelude::*;
@@ -13,6 +18,7 @@ pub use accelerated::{Chemistry, Leap};
 pub(crate) use explicit::add;
 pub use explicit::step;
 pub use faces::Faces;
+pub use steps::Steps;
 
 use crate::adsorption::BoundDye;
 use crate::cloth::{Cloth, Grid, Layer};
@@ -30,6 +36,7 @@ impl Plugin for DiffusionPlugin {
             .add_systems(
                 DyeStep,
                 (
+                    steps::many_steps.run_if(resource_exists::<Steps>),
                     one_step.run_if(resource_exists::<Conductances>),
                     leap.run_if(resource_exists::<Leap>),
                 )
@@ -235,7 +242,14 @@ fn prepare(
             let conductances = Conductances::new(&cloth, &faces, step_h, most);
             clock.splits = conductances.splits;
             clock.splits_if_explicit = conductances.splits;
-            commands.insert_resource(conductances);
+            // Where something else happens in every step, steps are taken one by one.
+            let equilibrium = scenario.dye.equilibrium;
+            if binding.is_none() && !scenario.has_baths() && conductances.splits == 1 {
+                drop(conductances);
+                commands.insert_resource(Steps::new(&cloth, &faces, step_h, equilibrium));
+            } else {
+                commands.insert_resource(conductances);
+            }
         }
         Solver::Accelerated => {
             let chemistry = Chemistry {

@@ -102,11 +102,16 @@ impl Scenario {
         )))
     }
 
+    /// Whether dye is taken up from a bath.
+    pub fn has_baths(&self) -> bool {
+        let is_bath = |supply: &SupplySpec| matches!(supply, SupplySpec::Bath { .. });
+        self.supply.iter().any(is_bath)
+    }
+
     /// The solver that computes the process. A bath, which takes a part of what is missing in every
     /// step, is for the explicit one alone.
     pub fn solver(&self) -> Solver {
-        let is_bath = |supply: &SupplySpec| matches!(supply, SupplySpec::Bath { .. });
-        if self.supply.iter().any(is_bath) {
+        if self.has_baths() {
             Solver::Explicit
         } else {
             self.process.solver

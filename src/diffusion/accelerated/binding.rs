@@ -10,8 +10,8 @@
 use crate::cloth::{Cloth, Grid};
 use crate::scenario::Isotherm;
 
-use super::lanes::{Cells, LANES, Lanes};
 use super::work::NOTHING;
+use crate::diffusion::lanes::{Cells, LANES, Lanes};
 
 /// How dye binds on a cloth.
 #[derive(Debug, Clone)]
@@ -19,6 +19,9 @@ pub struct Binding {
     isotherm: Isotherm,
     /// k, the share of its free dye that a cell binds in a step; or α_d.
     share: f32,
+    /// In a step dye binds after it has moved, so what binds is a share of c and of how c changes in a
+    /// step: 1; or 0 where a step is so long that explicit ones would be split.
+    pub moved: f32,
     /// For a power law without a formula: the settled amount at (i / [`ENTRIES`])²·[`LARGEST`].
     table: Vec<f32>,
     /// V_u of every cell.
@@ -94,6 +97,7 @@ impl Binding {
         Binding {
             isotherm,
             share: share as f32,
+            moved: 1.0,
             table: match isotherm {
                 Isotherm::Freundlich { k, b } if b != 0.5 && b != 1.0 => table(k, b),
                 _ => Vec::new(),
@@ -242,8 +246,8 @@ fn divide(
             let change =
                 mix.mu * (v_u * free + bound) + mix.nu * (v_u * free_before + bound_before) + flow;
             let total = v_u * c + a + change;
-            // Dye binds after it has moved.
-            let (moved, moved_first) = (c + free + at(block.rate.0), c + at(block.rate.1));
+            let moved = c + free + binding.moved * at(block.rate.0);
+            let moved_first = c + binding.moved * at(block.rate.1);
             let drive = share * v_u * (mix.rate * moved + mix.first * moved_first);
             let grown = mix.mu * bound + mix.nu * bound_before + drive;
             let limit = settled(total.max(0.0), v_d).min(v_d);
@@ -271,7 +275,8 @@ fn saturate(binding: &Binding, mix: Mix, block: Block, (v_u, v_d): (&Cells, &Cel
                 mix.mu * (v_u * free + bound) + mix.nu * (v_u * free_before + bound_before) + flow;
             let total = v_u * c + a + change;
             let rate = |c: f32, grown: f32| speed * (room - grown).max(0.0) * v_u * c;
-            let (moved, moved_first) = (c + free + at(block.rate.0), c + at(block.rate.1));
+            let moved = c + free + binding.moved * at(block.rate.0);
+            let moved_first = c + binding.moved * at(block.rate.1);
             let drive = mix.rate * rate(moved, bound) + mix.first * rate(moved_first, 0.0);
             let grown = mix.mu * bound + mix.nu * bound_before + drive;
             let grown = grown.min(room).min(total - a).max(0.0);

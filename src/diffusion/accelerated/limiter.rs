@@ -6,7 +6,7 @@
 //! they have (the room they have). Repairs of this kind: Shashkov and Wendroff, J. Comput. Phys.
 //! 198, 2004.
 
-use super::lanes::{Cells, LANES, Ways};
+use crate::diffusion::lanes::{Cells, LANES, Ways};
 
 /// Brings one row within the bounds. Returns whether its dye allows it; if not nothing is changed.
 pub fn limit(row: &mut [Cells], ways: &[Ways]) -> bool {

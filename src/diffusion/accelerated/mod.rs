@@ -11,19 +11,15 @@
 //! The same cubic gives the moments within a leap, so frames never shorten one, and however many
 //! there are the process is the same.
 //!
-//! **Conservation.** Stages are sums of flows that cross a face both ways ([`kernel`]); what flows
-//! into kept cells is followed with them ([`held`]) and booked. **Bounds.** Concentrations that
+//! **Conservation.** Stages are sums of flows that cross a face both ways ([`kernel`](super::kernel)); what flows
+//! into kept cells is followed with them ([`held`](super::held)) and booked. **Bounds.** Concentrations that
 //! leave 0…1 by more than a tenth of the tolerance shorten the leap; what is left of rounding is put
 //! right without loss ([`limiter`]).
 
 mod binding;
-mod held;
-mod kernel;
-mod lanes;
 mod limiter;
 mod rkl2;
 mod stiffness;
-mod tiles;
 mod work;
 
 use std::ops::Range;
@@ -32,13 +28,13 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 use self::binding::{Binding, Mix};
-use self::held::Held;
-use self::kernel::WeiszZollinger;
-use self::lanes::{Cells, LANES, Lanes, Ways};
-use self::tiles::{Level, PASS};
 use self::work::{Law, RatesOf, Stages};
 use super::Faces;
 use crate::cloth::Cloth;
+use crate::diffusion::held::Held;
+use crate::diffusion::kernel::WeiszZollinger;
+use crate::diffusion::lanes::{Cells, LANES, Lanes, Ways, unpack_row};
+use crate::diffusion::tiles::{self, Level, PASS};
 
 /// What the process does while a leap lasts.
 #[derive(Debug, Clone, Copy)]
@@ -134,7 +130,7 @@ impl Leap {
         } else {
             Law::Fick
         };
-        Leap {
+        let mut leap = Leap {
             stiffness: bound.sharp + binds,
             exchange: (bound.rough / 2.0).max(binds),
             a: [room(), room(), room()],
@@ -156,7 +152,13 @@ impl Leap {
             evaluations: 0,
             leaps: 0,
             rejected: 0,
+        };
+        if leap.splits() > 1
+            && let Some(binding) = &mut leap.binding
+        {
+            binding.moved = 0.0;
         }
+        leap
     }
 
     /// Into how many parts the explicit solver would split a step of this process.
@@ -400,7 +402,7 @@ impl Leap {
 
     /// What kept cells have bound in the leap.
     fn kept_bound(&self) -> f64 {
-        let grown = |cell: &held::HeldCell| {
+        let grown = |cell: &crate::diffusion::held::HeldCell| {
             let at = |a: &[Cells]| f64::from(a[cell.block].0[cell.layer][cell.lane]);
             at(&self.a[1]) - at(&self.a[0])
         };
@@ -433,14 +435,14 @@ impl Leap {
                 // Between two states within the bounds a straight line is within them too.
                 row = this.row_at(y, t, Cubic::straight(t));
             }
-            unpack(&row, [weft, warp]);
+            unpack_row(&row, [weft, warp]);
         });
         if binds {
             let rows = weft_bound
                 .par_chunks_mut(nx)
                 .zip(warp_bound.par_chunks_mut(nx));
             rows.enumerate().for_each(|(y, (weft, warp))| {
-                unpack(&this.bound_at(y, t), [weft, warp]);
+                unpack_row(&this.bound_at(y, t), [weft, warp]);
             });
         }
         let (first, last) = self.held.inflow();
@@ -517,15 +519,6 @@ impl Cubic {
             y1: t,
             rate0: 0.0,
             rate1: 0.0,
-        }
-    }
-}
-
-/// Writes a row of blocks into the rows of both layers.
-fn unpack(row: &[Cells], layers: [&mut [f32]; 2]) {
-    for (layer, cells) in layers.into_iter().enumerate() {
-        for (cells, block) in cells.chunks_mut(LANES).zip(row) {
-            cells.copy_from_slice(&block.0[layer][..cells.len()]);
         }
     }
 }

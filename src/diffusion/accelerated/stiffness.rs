@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::lanes::{Cells, LANES, Lanes, Ways};
+use crate::diffusion::lanes::{Cells, LANES, Lanes, Ways};
 
 /// Rounds of sharpening. The first ten gain most of what there is to gain.
 const ROUNDS: usize = 12;

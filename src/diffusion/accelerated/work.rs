@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::binding::{self, Binding, Blocks, Kept, Mix};
-use super::held::Held;
-use super::kernel::{At, Fick, Passage, Row, Southwards, Take, WeiszZollinger};
-use super::lanes::{Cells, Lanes, Ways};
-use super::tiles::{Level, Task, Work};
+use crate::diffusion::held::Held;
+use crate::diffusion::kernel::{At, Fick, Passage, Row, Southwards, Take, WeiszZollinger};
+use crate::diffusion::lanes::{Cells, Lanes, Ways};
+use crate::diffusion::tiles::{Level, Task, Work};
 use pulp::Simd;
 
 /// Changes smaller than this are none.
@@ -146,7 +146,10 @@ impl Stages<'_> {
     }
 
     /// The kept cells that a task comes across, with their places in the levels and in the row.
-    fn kept(&self, task: &Task) -> impl Iterator<Item = (usize, usize, &super::held::HeldCell)> {
+    fn kept(
+        &self,
+        task: &Task,
+    ) -> impl Iterator<Item = (usize, usize, &crate::diffusion::held::HeldCell)> {
         let (above, row) = (self.held.above(task.top), task.y * self.lanes.blocks);
         let blocks = row + task.blocks.start..row + task.blocks.end;
         self.held
@@ -237,8 +240,8 @@ impl Stages<'_> {
                 binding.stage_in_kept(
                     mix,
                     Kept {
-                        moved: (v_u * (c + rate)).max(0.0),
-                        moved_first: (v_u * (c + cell.rate as f32)).max(0.0),
+                        moved: (v_u * (c + binding.moved * rate)).max(0.0),
+                        moved_first: (v_u * (c + binding.moved * cell.rate as f32)).max(0.0),
                         v_d: binding.fibre(cell.block, cell.layer, cell.lane),
                         a: self.begin.1[cell.block].0[cell.layer][cell.lane],
                         last: at(from.bound),

@@ -85,6 +85,15 @@ impl Lanes {
             });
     }
 
+    /// Fills a `(layer, y, x)` field from blocks.
+    pub fn unpack(self, blocks: &[Cells], field: &mut [f32]) {
+        let nx = self.grid.nx;
+        let (weft, warp) = field.split_at_mut(self.grid.layer_len());
+        let rows = weft.par_chunks_mut(nx).zip(warp.par_chunks_mut(nx));
+        rows.zip(blocks.par_chunks(self.blocks))
+            .for_each(|((weft, warp), blocks)| unpack_row(blocks, [weft, warp]));
+    }
+
     /// Blocks with the values of a rule for every cell, 0 beyond the edge.
     pub fn field(self, rule: impl Fn(Layer, usize, usize) -> f64 + Sync) -> Vec<Cells> {
         let mut field = vec![Cells::ZERO; self.len()];
@@ -141,6 +150,15 @@ impl Lanes {
                 }
             });
         ways
+    }
+}
+
+/// Writes a row of blocks into the rows of both layers.
+pub fn unpack_row(blocks: &[Cells], layers: [&mut [f32]; 2]) {
+    for (layer, cells) in layers.into_iter().enumerate() {
+        for (cells, block) in cells.chunks_mut(LANES).zip(blocks) {
+            cells.copy_from_slice(&block.0[layer][..cells.len()]);
+        }
     }
 }
 

@@ -64,6 +64,14 @@ impl Held {
         Held { rim, deep, above }
     }
 
+    /// No kept cells.
+    pub fn nothing(lanes: Lanes) -> Self {
+        Held {
+            above: vec![0; lanes.grid.ny + 1],
+            ..Held::default()
+        }
+    }
+
     /// How many of the rim lie above row `y`.
     pub fn above(&self, y: usize) -> usize {
         self.above[y]
