@@ -37,6 +37,16 @@ pub struct Ways {
     pub per_capacity: [[f32; LANES]; 2],
 }
 
+impl Ways {
+    /// Nothing passes anywhere.
+    pub const SHUT: Ways = Ways {
+        east: [[0.0; LANES]; 2],
+        south: [[0.0; LANES]; 2],
+        beside: [0.0; LANES],
+        per_capacity: [[0.0; LANES]; 2],
+    };
+}
+
 /// How the cells of a grid lie in blocks: row by row. The last block of a row may reach beyond the
 /// edge of the cloth, where nothing holds any liquid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,15 +125,7 @@ impl Lanes {
         let Grid { nx, ny } = self.grid;
         let scale = step_h / (cloth.cell_mm * cloth.cell_mm);
         let capacity = |layer, y, x| f64::from(cloth.capacity_free[self.grid.index(layer, y, x)]);
-        let mut ways = vec![
-            Ways {
-                east: [[0.0; LANES]; 2],
-                south: [[0.0; LANES]; 2],
-                beside: [0.0; LANES],
-                per_capacity: [[0.0; LANES]; 2],
-            };
-            self.len()
-        ];
+        let mut ways = vec![Ways::SHUT; self.len()];
         ways.par_chunks_mut(self.blocks)
             .enumerate()
             .for_each(|(y, row)| {

@@ -8,6 +8,7 @@ mod faces;
 mod held;
 mod kernel;
 mod lanes;
+mod peer;
 mod steps;
 mod tiles;
 
@@ -18,6 +19,7 @@ pub use accelerated::{Chemistry, Leap};
 pub(crate) use explicit::add;
 pub use explicit::step;
 pub use faces::Faces;
+pub use peer::Peer;
 pub use steps::Steps;
 
 use crate::adsorption::BoundDye;
