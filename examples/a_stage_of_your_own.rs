@@ -38,7 +38,7 @@ fn bleach(
     mut dye: ResMut<FreeDye>,
     mut ledger: ResMut<Ledger>,
 ) {
-    // One run of this may cover many steps, or a part of one.
+    // One run of this may cover a part of a step. Since it changes the dye, never more than one.
     let stays = (1.0 - bleaching.per_hour * clock.stride_hours()) as f32;
     for i in 0..dye.concentration.len() {
         let faded = dye.concentration[i] * stays;

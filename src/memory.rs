@@ -8,12 +8,12 @@ use crate::scenario::Scenario;
 
 /// Bytes of the program itself.
 const BYTES_AT_LEAST: u128 = 20_000_000;
-/// Bytes of every field kept for one cell of a layer: three of free dye, two of conductances along
-/// the cloth, half of one between the layers, capacities and their inverse, half of the resist, and
-/// half of which cell is seen.
-const BYTES_PER_CELL: u128 = 38;
-/// Bytes of bound dye and its carry.
-const BYTES_PER_BINDING_CELL: u128 = 8;
+/// Bytes of every field kept for one cell of a layer, with the solver that keeps most: three of free
+/// dye, two and a half of conductances along the cloth and between the layers, capacities and their
+/// inverse, half of the resist, half of which cell is seen, and four that solvers step between.
+const BYTES_PER_CELL: u128 = 54;
+/// Bytes of bound dye, of the three fields that solvers step between, and of capacities.
+const BYTES_PER_BINDING_CELL: u128 = 24;
 /// Bytes for one pixel of the picture: its shade, and its colour five times over: now, while it is
 /// made smaller for the contact sheet, and in the three frames that are on their way to the disk.
 const BYTES_PER_PIXEL: u128 = 4 + 5 * 3;

@@ -56,17 +56,13 @@ pub fn run(arguments: &Record) -> ExitCode {
     match recorded {
         Ok(recording) => {
             let seconds = began.elapsed().as_secs_f64();
-            let (nx, ny) = experiment.scenario.cloth.cells();
-            let updates = recording.steps as f64 * (2 * nx * ny) as f64 / seconds.max(1e-9);
             let ended = if recording.complete { "" } else { "stopped; " };
             if !arguments.quiet {
                 say(&format!(
-                    "{ended}{} frames in {} ({} steps in {seconds:.2} s, \
-                     {:.2} billion cell updates a second)",
+                    "{ended}{} frames in {} ({} steps in {seconds:.2} s)",
                     recording.frames,
                     recording.folder.display(),
-                    recording.steps,
-                    updates / 1e9
+                    recording.steps
                 ));
             }
             if recording.complete {
