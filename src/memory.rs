@@ -14,14 +14,14 @@ const BYTES_AT_LEAST: u128 = 20_000_000;
 const BYTES_PER_CELL: u128 = 54;
 /// Bytes of bound dye, of the three fields that solvers step between, and of capacities.
 const BYTES_PER_BINDING_CELL: u128 = 24;
-/// Bytes for one pixel of the picture: its shade, and its colour five times over: now, while it is
-/// made smaller for the contact sheet, and in the three frames that are on their way to the disk.
-const BYTES_PER_PIXEL: u128 = 4 + 5 * 3;
+/// Bytes for one pixel of the picture: its shade, and its colour six times over: now, while it is
+/// made smaller for the contact sheet, and in the four frames that are on their way to the disk.
+const BYTES_PER_PIXEL: u128 = 4 + 6 * 3;
 /// Bytes of the contact sheet for each of its places, and again for the sheet as a whole.
 const BYTES_PER_SHEET_PLACE: u128 = 2 * 3 * (crate::record::LARGEST_TILE as u128).pow(2);
-/// Bytes for one cell of the fields that are recorded, free, bound and held, four times over: being
-/// taken, and in the three states that are on their way to the disk.
-const BYTES_PER_RECORDED_CELL: u128 = 4 * 3 * 4;
+/// Bytes for one cell of the fields that are recorded, free, bound and held, five times over: being
+/// taken, and in the four states that are on their way to the disk.
+const BYTES_PER_RECORDED_CELL: u128 = 5 * 3 * 4;
 
 /// The most cells a layer may have: a cell is named by 32 bits.
 const MOST_CELLS: u128 = 1 << 31;

@@ -60,17 +60,13 @@ impl Take for Combine<'_> {
         } = self.mix;
         let first_rate = at.of::<S>(self.first_rate);
         let into = at.of_mut::<S>(self.into);
-        let last = simd.add_f32s(
-            simd.mul_f32s(simd.splat_f32s(mu), here),
-            simd.mul_f32s(simd.splat_f32s(nu), *into),
-        );
-        let rates = simd.add_f32s(
-            simd.mul_f32s(simd.splat_f32s(r), rate),
-            simd.mul_f32s(simd.splat_f32s(first), first_rate),
-        );
+        // Multiplied and added in one, rounded once, on every processor alike.
+        let change = simd.mul_f32s(simd.splat_f32s(first), first_rate);
+        let change = simd.mul_add_f32s(simd.splat_f32s(r), rate, change);
+        let change = simd.mul_add_f32s(simd.splat_f32s(nu), *into, change);
+        let change = simd.mul_add_f32s(simd.splat_f32s(mu), here, change);
         // Ahead of the dye the numbers grow ever smaller, and processors are a hundred times
         // slower with the smallest of all (subnormal) than with any other.
-        let change = simd.add_f32s(last, rates);
         let nothing = simd.less_than_f32s(simd.abs_f32s(change), simd.splat_f32s(NOTHING));
         *into = simd.select_f32s(nothing, simd.splat_f32s(0.0), change);
     }
