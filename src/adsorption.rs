@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 use crate::cloth::Cloth;
-use crate::diffusion::{Conductances, FreeDye, add};
+use crate::diffusion::{CELLS_A_SUM, Conductances, FreeDye, add};
 use crate::scenario::{AdsorptionSpec, Isotherm, Scenario, Solver};
 use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, ProcessClock, TheExperiment};
 
@@ -44,8 +44,12 @@ pub struct BoundDye {
 impl BoundDye {
     /// The bound dye in the whole cloth, in cell volumes.
     pub fn total(&self) -> f64 {
-        // Not `sum`: the sum of nothing would be −0.
-        let sum = |of: &[f32]| of.iter().fold(0.0, |sum, a| sum + f64::from(*a));
+        let part = |of: &[f32]| of.iter().map(|a| f64::from(*a)).sum::<f64>();
+        // In order, so that no number of threads changes the sum. Not `sum`: that of nothing is −0.
+        let sum = |of: &[f32]| {
+            let parts: Vec<f64> = of.par_chunks(CELLS_A_SUM).map(part).collect();
+            parts.iter().fold(0.0, |sum, part| sum + part)
+        };
         sum(&self.amount) + sum(&self.carry)
     }
 
