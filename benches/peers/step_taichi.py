@@ -13,18 +13,19 @@ def step(
     b: ti.types.ndarray(ndim=2),
     m: ti.types.ndarray(ndim=3),
 ):
-    for l, y, x in c:
-        h = c[l, y, x]
-        q = b[y, x] * (c[1 - l, y, x] - h)
-        if x > 0:
-            q += e[l, y, x - 1] * (c[l, y, x - 1] - h)
-        if x + 1 < c.shape[2]:
-            q += e[l, y, x] * (c[l, y, x + 1] - h)
-        if y > 0:
-            q += s[l, y - 1, x] * (c[l, y - 1, x] - h)
-        if y + 1 < c.shape[1]:
-            q += s[l, y, x] * (c[l, y + 1, x] - h)
-        d[l, y, x] = h + m[l, y, x] * q
+    for y, x in b:
+        for l in ti.static(range(2)):
+            h = c[l, y, x]
+            q = b[y, x] * (c[1 - l, y, x] - h)
+            if x > 0:
+                q += e[l, y, x - 1] * (c[l, y, x - 1] - h)
+            if x + 1 < b.shape[1]:
+                q += e[l, y, x] * (c[l, y, x + 1] - h)
+            if y > 0:
+                q += s[l, y - 1, x] * (c[l, y - 1, x] - h)
+            if y + 1 < b.shape[0]:
+                q += s[l, y, x] * (c[l, y + 1, x] - h)
+            d[l, y, x] = h + m[l, y, x] * q
 
 
 def prepare(nx, ny):
