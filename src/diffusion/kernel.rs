@@ -2,7 +2,7 @@
 //!
 //! The loop is written once, in vectors of whatever length the processor has (the `pulp` crate
 //! chooses while the program runs). Every cell is computed by the same operations in the same
-//! order, so all processors give the same bytes.
+//! order and none is fused, so all processors give the same bytes.
 //!
 //! Each face is computed once: what passes it eastwards is moved on by one lane and becomes the
 //! next cell's flow from the west, and what passes southwards is kept for the row below. So

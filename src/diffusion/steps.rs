@@ -8,9 +8,9 @@ use bevy::prelude::*;
 use pulp::Simd;
 
 use super::held::Held;
-use super::kernel::{At, Fick, Passage, Row, Southwards, Take, WeiszZollinger};
+use super::kernel::{At, Fick, Passage, Take, WeiszZollinger};
 use super::lanes::{Cells, Lanes, Ways};
-use super::tiles::{self, Level, PASS, Task, Work};
+use super::tiles::{self, Level, PASS, Task, Work, flow};
 use super::{Faces, FreeDye};
 use crate::cloth::Cloth;
 use crate::ledger::Ledger;
@@ -195,39 +195,16 @@ impl Work for Ground<'_> {
 }
 
 impl Ground<'_> {
-    fn step<P: Passage>(&self, passage: P, task: Task, from: &Level, into: &mut Level) {
+    fn step<P: Passage>(&self, passage: P, mut task: Task, from: &Level, into: &mut Level) {
         let blocks = self.lanes.blocks;
         let row = |y: usize| y * blocks..(y + 1) * blocks;
         let here = row(task.y - task.top);
-        if task.first {
-            match task.y.checked_sub(1) {
-                None => task.south[task.blocks.clone()].fill(Cells::ZERO),
-                Some(above) => Southwards {
-                    passage,
-                    here: &from.free[row(above - task.top)],
-                    below: &from.free[here.clone()],
-                    ways: &self.ways[row(above)],
-                    south: &mut *task.south,
-                    blocks: task.blocks.clone(),
-                }
-                .compute(),
-            }
-        }
-        let below = (task.y + 1).min(self.lanes.grid.ny - 1);
-        Row {
-            passage,
-            here: &from.free[here.clone()],
-            below: &from.free[row(below - task.top)],
-            ways: &self.ways[row(task.y)],
-            south: &mut *task.south,
-            blocks: task.blocks.clone(),
-            take: Add {
-                carry: &from.bound[here.clone()],
-                into: &mut into.free[here.clone()],
-                left_over: &mut into.bound[here.clone()],
-            },
-        }
-        .compute();
+        let take = Add {
+            carry: &from.bound[here.clone()],
+            into: &mut into.free[here.clone()],
+            left_over: &mut into.bound[here.clone()],
+        };
+        flow(passage, self.lanes, self.ways, &mut task, from.free, take);
         let above = self.held.above(task.top);
         let first = task.y * blocks;
         let within = first + task.blocks.start..first + task.blocks.end;

@@ -14,7 +14,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::lanes::Cells;
+use super::kernel::{Passage, Row, Southwards, Take};
+use super::lanes::{Cells, Lanes, Ways};
 
 /// Stages of one pass.
 pub const PASS: usize = 12;
@@ -155,6 +156,45 @@ fn sweep(work: &impl Work, stages: usize, rows: Rows, range: impl Fn(usize) -> R
             }
         }
     }
+}
+
+/// Lets dye flow in the row of a task, through the row's faces and from the rows beside it in
+/// `free`, which holds the rows of the tile.
+pub fn flow<P: Passage>(
+    passage: P,
+    lanes: Lanes,
+    ways: &[Ways],
+    task: &mut Task,
+    free: &[Cells],
+    take: impl Take,
+) {
+    let row = |y: usize| y * lanes.blocks..(y + 1) * lanes.blocks;
+    let free = |y: usize| &free[row(y - task.top)];
+    let blocks = task.blocks.clone();
+    if task.first {
+        match task.y.checked_sub(1) {
+            None => task.south[blocks.clone()].fill(Cells::ZERO),
+            Some(above) => Southwards {
+                passage,
+                here: free(above),
+                below: free(task.y),
+                ways: &ways[row(above)],
+                south: &mut *task.south,
+                blocks: blocks.clone(),
+            }
+            .compute(),
+        }
+    }
+    Row {
+        passage,
+        here: free(task.y),
+        below: free((task.y + 1).min(lanes.grid.ny - 1)),
+        ways: &ways[row(task.y)],
+        south: &mut *task.south,
+        blocks,
+        take,
+    }
+    .compute();
 }
 
 impl Rows<'_> {

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::binding::{self, Binding, Blocks, Kept, Mix};
 use crate::diffusion::held::Held;
-use crate::diffusion::kernel::{At, Fick, Passage, Row, Southwards, Take, WeiszZollinger};
+use crate::diffusion::kernel::{At, Fick, Passage, Take, WeiszZollinger};
 use crate::diffusion::lanes::{Cells, Lanes, Ways};
-use crate::diffusion::tiles::{Level, Task, Work};
+use crate::diffusion::tiles::{Level, Task, Work, flow};
 use pulp::Simd;
 
 /// Changes smaller than this are none.
@@ -60,11 +60,15 @@ impl Take for Combine<'_> {
         } = self.mix;
         let first_rate = at.of::<S>(self.first_rate);
         let into = at.of_mut::<S>(self.into);
-        // Multiplied and added in one, rounded once, on every processor alike.
-        let change = simd.mul_f32s(simd.splat_f32s(first), first_rate);
-        let change = simd.mul_add_f32s(simd.splat_f32s(r), rate, change);
-        let change = simd.mul_add_f32s(simd.splat_f32s(nu), *into, change);
-        let change = simd.mul_add_f32s(simd.splat_f32s(mu), here, change);
+        let last = simd.add_f32s(
+            simd.mul_f32s(simd.splat_f32s(mu), here),
+            simd.mul_f32s(simd.splat_f32s(nu), *into),
+        );
+        let rates = simd.add_f32s(
+            simd.mul_f32s(simd.splat_f32s(r), rate),
+            simd.mul_f32s(simd.splat_f32s(first), first_rate),
+        );
+        let change = simd.add_f32s(last, rates);
         // Ahead of the dye the numbers grow ever smaller, and processors are a hundred times
         // slower with the smallest of all (subnormal) than with any other.
         let nothing = simd.less_than_f32s(simd.abs_f32s(change), simd.splat_f32s(NOTHING));
@@ -110,37 +114,6 @@ impl Stages<'_> {
         y * self.lanes.blocks..(y + 1) * self.lanes.blocks
     }
 
-    /// Runs the flows of one row; `task` says which.
-    fn flows<P: Passage>(&self, passage: P, task: &mut Task, free: &[Cells], take: impl Take) {
-        let row = |y: usize| &free[self.whole(y - task.top)];
-        let blocks = task.blocks.clone();
-        if task.first {
-            match task.y.checked_sub(1) {
-                None => task.south[blocks.clone()].fill(Cells::ZERO),
-                Some(above) => Southwards {
-                    passage,
-                    here: row(above),
-                    below: row(task.y),
-                    ways: &self.ways[self.whole(above)],
-                    south: &mut *task.south,
-                    blocks: blocks.clone(),
-                }
-                .compute(),
-            }
-        }
-        let last = self.lanes.grid.ny - 1;
-        Row {
-            passage,
-            here: row(task.y),
-            below: row(last.min(task.y + 1)),
-            ways: &self.ways[self.whole(task.y)],
-            south: &mut *task.south,
-            blocks,
-            take,
-        }
-        .compute();
-    }
-
     /// The kept cells that a task comes across, with their places in the levels and in the row.
     fn kept(
         &self,
@@ -166,7 +139,7 @@ impl Stages<'_> {
             first_rate: &self.first_rate[self.whole(task.y)],
             into: &mut into.free[here.clone()],
         };
-        self.flows(Fick, &mut task, from.free, take);
+        flow(Fick, self.lanes, self.ways, &mut task, from.free, take);
         let row = &mut into.free[here];
         for (i, block, cell) in self.kept(&task) {
             // Kept cells did not change before; what stands there now flowed in.
@@ -210,9 +183,11 @@ impl Stages<'_> {
                 blocks: blocks.clone(),
                 ..task
             };
-            self.flows(passage, &mut shifted, &around, Rates(&mut rates));
+            let take = Rates(&mut rates);
+            flow(passage, self.lanes, self.ways, &mut shifted, &around, take);
         } else {
-            self.flows(passage, &mut task, from.free, Rates(&mut rates));
+            let take = Rates(&mut rates);
+            flow(passage, self.lanes, self.ways, &mut task, from.free, take);
             let first = &self.first_rate[there.clone()][blocks.clone()];
             for (rate, first) in rates[blocks.clone()].iter_mut().zip(first) {
                 *rate = plus(rate, first);
@@ -317,20 +292,12 @@ impl Work for RatesOf<'_> {
     }
 
     fn row(&self, mut task: Task, from: &Level, into: &mut Level) {
-        let nothing = Stages {
-            lanes: self.lanes,
-            ways: self.ways,
-            law: self.law,
-            held: &Held::default(),
-            begin: (&[], &[]),
-            first_rate: &[],
-            binding: None,
-            mixes: &[],
-        };
-        let take = Rates(&mut into.free[nothing.whole(task.y - task.top)]);
+        let blocks = self.lanes.blocks;
+        let here = (task.y - task.top) * blocks..(task.y - task.top + 1) * blocks;
+        let take = Rates(&mut into.free[here]);
         match self.law {
-            Law::Fick => nothing.flows(Fick, &mut task, from.free, take),
-            Law::Slowed(law) => nothing.flows(law, &mut task, from.free, take),
+            Law::Fick => flow(Fick, self.lanes, self.ways, &mut task, from.free, take),
+            Law::Slowed(law) => flow(law, self.lanes, self.ways, &mut task, from.free, take),
         }
     }
 }
