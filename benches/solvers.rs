@@ -123,6 +123,10 @@ fn main() {
         println!("{} {error}", speed(2 * nx * ny, steps as u64, begin));
         return;
     }
+    if arguments.iter().any(|a| a == "--seikaiha") {
+        whole_seikaiha();
+        return;
+    }
     for (nx, ny, steps) in [(800, 600, 1200), (2048, 2048, 120), (4096, 4096, 48)] {
         explicit(nx, ny, steps);
     }

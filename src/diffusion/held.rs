@@ -38,6 +38,8 @@ pub struct Held {
     deep: Vec<HeldCell>,
     /// For every row, how many of the rim lie above it; one more for the end.
     above: Vec<usize>,
+    /// Blocks in a row.
+    blocks: usize,
 }
 
 impl Held {
@@ -61,13 +63,19 @@ impl Held {
         let (rim, deep): (Vec<_>, Vec<_>) = cells.iter().copied().partition(is_rim);
         let row = |y: usize| rim.partition_point(|cell| cell.block < y * lanes.blocks);
         let above = (0..=lanes.grid.ny).map(row).collect();
-        Held { rim, deep, above }
+        Held {
+            rim,
+            deep,
+            above,
+            blocks: lanes.blocks,
+        }
     }
 
     /// No kept cells.
     pub fn nothing(lanes: Lanes) -> Self {
         Held {
             above: vec![0; lanes.grid.ny + 1],
+            blocks: lanes.blocks,
             ..Held::default()
         }
     }
@@ -87,6 +95,17 @@ impl Held {
         let row = self.rim[first..self.above[y + 1]].iter().enumerate();
         row.map(move |(i, cell)| (first + i, cell))
             .filter(move |(_, cell)| blocks.contains(&cell.block))
+    }
+
+    /// All kept cells of row `y`.
+    pub fn in_row(&self, y: usize) -> impl Iterator<Item = &HeldCell> {
+        let row = y * self.blocks..(y + 1) * self.blocks;
+        let of = move |cells: &'_ [HeldCell]| {
+            let at = |block: usize| cells.partition_point(|cell| cell.block < block);
+            at(row.start)..at(row.end)
+        };
+        let (rim, deep) = (of(&self.rim), of(&self.deep));
+        self.rim[rim].iter().chain(&self.deep[deep])
     }
 
     /// Takes the rates at the end of a leap out of a field of rates: kept cells do not change.

@@ -21,6 +21,11 @@ pub struct Cells(pub [[f32; LANES]; 2]);
 impl Cells {
     /// Nothing anywhere.
     pub const ZERO: Cells = Cells([[0.0; LANES]; 2]);
+
+    /// Every value times a number.
+    pub fn times(&self, number: f32) -> Self {
+        Cells(self.0.map(|layer| layer.map(|value| value * number)))
+    }
 }
 
 /// What the faces of a block let through in one step, and what its cells hold.

@@ -10,7 +10,7 @@ use pulp::Simd;
 use super::held::Held;
 use super::kernel::{At, Fick, Passage, Take, WeiszZollinger};
 use super::lanes::{Cells, Lanes, Ways};
-use super::tiles::{self, Level, PASS, Task, Work, flow};
+use super::tiles::{self, Level, Task, Work, flow};
 use super::{Faces, FreeDye};
 use crate::cloth::Cloth;
 use crate::ledger::Ledger;
@@ -59,18 +59,13 @@ impl State {
             brought.clear();
             brought.resize(ground.held.rim.len(), 0.0);
         }
-        let mut left = steps;
-        while left > 0 {
-            let pass = left.min(PASS);
-            let ([c0, c1], [r0, r1], [b0, b1]) = (&mut self.c, &mut self.carry, &mut self.brought);
-            let level = |free, bound, held| Level { free, bound, held };
-            tiles::pass(&ground, pass, [level(c0, r0, b0), level(c1, r1, b1)]);
-            if pass % 2 == 1 {
-                self.c.swap(0, 1);
-                self.carry.swap(0, 1);
-                self.brought.swap(0, 1);
-            }
-            left -= pass;
+        let ([c0, c1], [r0, r1], [b0, b1]) = (&mut self.c, &mut self.carry, &mut self.brought);
+        let level = |free, bound, held| Level { free, bound, held };
+        tiles::pass(&ground, steps, [level(c0, r0, b0), level(c1, r1, b1)]);
+        if steps % 2 == 1 {
+            self.c.swap(0, 1);
+            self.carry.swap(0, 1);
+            self.brought.swap(0, 1);
         }
     }
 }
@@ -86,7 +81,7 @@ pub struct Steps {
 }
 
 /// Steps of one run at the most, so that whoever waits hears of them in time.
-const LONGEST: u64 = 20 * PASS as u64;
+const LONGEST: u64 = 240;
 
 impl Steps {
     /// Prepares steps on a cloth.

@@ -3,7 +3,8 @@
 //! A stage of the whole cloth reads and writes far more than the processor's own caches hold. But a
 //! row of one stage needs only three rows of the stage before. So the cloth is cut into tiles of
 //! rows, and within a tile the stages follow each other row by row like a wave: stage 1 of row y,
-//! stage 2 of row y − 1, … [`PASS`] stages are done with rows that are still in the cache.
+//! stage 2 of row y − 1, … The [`WAVE`] stages of a wave work on rows that are still in the cache of
+//! their core; and a tile is small enough that the large cache keeps it for several waves.
 //!
 //! At its edges a tile cannot go on alone, and computes one row less in every stage; the wedges that
 //! are left between tiles follow in a second round. Wide cloth is taken strip by strip, each
@@ -17,11 +18,15 @@ use rayon::prelude::*;
 use super::kernel::{Passage, Row, Southwards, Take};
 use super::lanes::{Cells, Lanes, Ways};
 
-/// Stages of one pass.
-pub const PASS: usize = 12;
+/// Stages of a wave.
+const WAVE: usize = 12;
 
-/// Blocks in a strip: with [`PASS`] stages they fill about a megabyte.
+/// Blocks in a strip: with [`WAVE`] stages they fill about a megabyte.
 const STRIP: usize = 64;
+
+/// Rows of a tile that goes through [`LONG`] stages.
+const HIGH: usize = 150;
+const LONG: usize = 4 * WAVE;
 
 /// The values of one stage.
 pub struct Level<'a> {
@@ -58,7 +63,7 @@ pub trait Work: Sync {
 
 /// One row of one stage.
 pub struct Task<'a> {
-    /// The stage of the pass, from 0.
+    /// The stage, from 0.
     pub stage: usize,
     /// The row of the cloth.
     pub y: usize,
@@ -70,27 +75,43 @@ pub struct Task<'a> {
     pub first: bool,
     /// What flows south between rows of this stage.
     pub south: &'a mut [Cells],
+    /// Room for a row.
+    pub spare: &'a mut [Cells],
 }
 
-/// Does `stages` (at most [`PASS`]) stages of work. The first reads `levels[0]`.
+/// Does `stages` stages of work. The first reads `levels[0]` and writes `levels[1]`, the second the
+/// other way round, and so on.
 pub fn pass(work: &impl Work, stages: usize, levels: [Level; 2]) {
     let rows = work.rows();
-    // A tile has room for its two slopes.
-    let most = rows / (2 * PASS + 2);
-    let tiles = most.min(4 * rayon::current_num_threads()).max(1);
+    let threads = rayon::current_num_threads();
+    // High tiles need less memory traffic, but there must be enough of them for all cores. Every tile
+    // needs room for its two slopes.
+    let (tiles, at_once) = match rows / HIGH {
+        high if high >= 2 * threads => (high, LONG),
+        _ => ((rows / (2 * WAVE + 2)).clamp(1, 4 * threads), WAVE),
+    };
+    let mut whole = Rows { top: 0, levels };
+    for first in (0..stages).step_by(at_once) {
+        let now = first..stages.min(first + at_once);
+        in_tiles(work, now, tiles, whole.again());
+    }
+}
+
+/// Does some stages in so many tiles.
+fn in_tiles(work: &impl Work, stages: Range<usize>, tiles: usize, mut whole: Rows) {
+    let rows = work.rows();
     let bounds: Vec<usize> = (0..=tiles).map(|i| i * rows / tiles).collect();
     let middles: Vec<usize> = bounds.windows(2).map(|b| (b[0] + b[1]) / 2).collect();
-    let mut whole = Rows { top: 0, levels };
     split(work, whole.again(), &bounds)
         .into_par_iter()
         .zip(bounds.par_windows(2))
         .for_each(|(tile, ends)| {
-            sweep(work, stages, tile, |stage| {
-                let top = if ends[0] == 0 { 0 } else { ends[0] + stage };
+            sweep(work, stages.clone(), tile, |done| {
+                let top = if ends[0] == 0 { 0 } else { ends[0] + done };
                 let end = if ends[1] == rows {
                     rows
                 } else {
-                    ends[1] - stage
+                    ends[1] - done
                 };
                 top..end
             });
@@ -104,54 +125,63 @@ pub fn pass(work: &impl Work, stages: usize, levels: [Level; 2]) {
         .enumerate()
         .filter(|(i, _)| (1..tiles).contains(i))
         .for_each(|(i, tile)| {
-            sweep(work, stages, tile, |stage| {
-                bounds[i] - stage..bounds[i] + stage
+            sweep(work, stages.clone(), tile, |done| {
+                bounds[i] - done..bounds[i] + done
             });
         });
 }
 
-/// Does the stages of one tile; `range` gives the rows of a stage, counted from 1.
-fn sweep(work: &impl Work, stages: usize, rows: Rows, range: impl Fn(usize) -> Range<usize>) {
+/// Does the stages of one tile; `range` gives the rows that a stage computes, from how many are done
+/// when it is.
+fn sweep(
+    work: &impl Work,
+    stages: Range<usize>,
+    rows: Rows,
+    range: impl Fn(usize) -> Range<usize>,
+) {
     let blocks = work.blocks();
     let Rows {
         top,
         levels: [mut even, mut odd],
     } = rows;
     let end = top + even.free.len() / blocks;
-    let mut south = vec![Cells::ZERO; stages * blocks];
+    let mut south = vec![Cells::ZERO; WAVE.min(stages.len()) * blocks];
+    let mut spare = vec![Cells::ZERO; blocks];
     let strips = blocks.div_ceil(STRIP);
     let width = blocks.div_ceil(strips);
     for strip in 0..strips {
-        for front in top + 1..=end + stages {
-            for stage in 1..=stages {
-                let Some(y) = front.checked_sub(stage) else {
-                    continue;
-                };
-                let range = range(stage);
-                if !range.contains(&y) {
-                    continue;
-                }
-                let left = (strip * width).saturating_sub(stage);
-                let right = if strip + 1 == strips {
-                    blocks
-                } else {
-                    ((strip + 1) * width).saturating_sub(stage)
-                };
-                if left >= right {
-                    continue;
-                }
-                let task = Task {
-                    stage: stage - 1,
-                    y,
-                    top,
-                    blocks: left..right,
-                    first: y == range.start,
-                    south: &mut south[(stage - 1) * blocks..][..blocks],
-                };
-                if stage % 2 == 1 {
-                    work.row(task, &even, &mut odd);
-                } else {
-                    work.row(task, &odd, &mut even);
+        for first in stages.clone().step_by(WAVE) {
+            let wave = first..stages.end.min(first + WAVE);
+            for front in top..end + wave.len() {
+                for (behind, stage) in wave.clone().enumerate() {
+                    let Some(y) = front.checked_sub(behind) else {
+                        continue;
+                    };
+                    let done = stage + 1 - stages.start;
+                    let range = range(done);
+                    let left = (strip * width).saturating_sub(done);
+                    let right = if strip + 1 == strips {
+                        blocks
+                    } else {
+                        ((strip + 1) * width).saturating_sub(done)
+                    };
+                    if !range.contains(&y) || left >= right {
+                        continue;
+                    }
+                    let task = Task {
+                        stage,
+                        y,
+                        top,
+                        blocks: left..right,
+                        first: y == range.start,
+                        south: &mut south[behind * blocks..][..blocks],
+                        spare: &mut spare,
+                    };
+                    if stage % 2 == 0 {
+                        work.row(task, &even, &mut odd);
+                    } else {
+                        work.row(task, &odd, &mut even);
+                    }
                 }
             }
         }

@@ -7,27 +7,57 @@
 //! what was bound when the leap began. So neither limit is ever passed, and however eagerly
 //! fibre binds, the step need not be short.
 
-use crate::cloth::{Cloth, Grid};
-use crate::scenario::Isotherm;
+use pulp::Simd;
 
-use super::work::NOTHING;
+use super::work::without_nothing;
+use crate::cloth::{Cloth, Grid};
+use crate::diffusion::held::HeldCell;
 use crate::diffusion::lanes::{Cells, LANES, Lanes};
+use crate::scenario::Isotherm;
 
 /// How dye binds on a cloth.
 #[derive(Debug, Clone)]
 pub struct Binding {
     isotherm: Isotherm,
+    settled: Settled,
     /// k, the share of its free dye that a cell binds in a step; or α_d.
     share: f32,
     /// In a step dye binds after it has moved, so what binds is a share of c and of how c changes in a
     /// step: 1; or 0 where a step is so long that explicit ones would be split.
     pub moved: f32,
-    /// For a power law without a formula: the settled amount at (i / [`ENTRIES`])²·[`LARGEST`].
-    table: Vec<f32>,
     /// V_u of every cell.
     pub capacity: Vec<Cells>,
     /// V_d of every cell.
-    fibre: Vec<Cells>,
+    pub fibre: Vec<Cells>,
+}
+
+/// How the isotherm divides a total U = φ + A: the solution of A = A_d(U − A).
+#[derive(Debug, Clone)]
+enum Settled {
+    /// A share of the total.
+    Share(f32),
+    /// A = k·√φ, with k².
+    Root(f32),
+    /// Another power: the settled amounts at (i / [`ENTRIES`])²·[`LARGEST`].
+    Table(Vec<f32>),
+    /// A = V_d·K·φ/(1 + K·φ), with K.
+    Langmuir(f32),
+    /// After paper B: no equilibrium, but a most, a_d.
+    Most(f32),
+}
+
+impl Settled {
+    fn of(isotherm: Isotherm) -> Self {
+        match isotherm {
+            Isotherm::Partition { k } | Isotherm::Freundlich { k, b: 1.0 } => {
+                Settled::Share((k / (1.0 + k)) as f32)
+            }
+            Isotherm::Freundlich { k, b: 0.5 } => Settled::Root((k * k) as f32),
+            Isotherm::Freundlich { k, b } => Settled::Table(table(k, b)),
+            Isotherm::Langmuir { kl } => Settled::Langmuir(kl as f32),
+            Isotherm::Saturating { most, .. } => Settled::Most(most as f32),
+        }
+    }
 }
 
 /// Entries of the table of settled amounts.
@@ -48,45 +78,38 @@ pub struct Mix {
     pub first: f32,
 }
 
-/// Neighbouring blocks in one stage. Pairs are of free and bound dye; those of stages are changes of
-/// c and of A since the beginning of the leap.
-pub struct Blocks<'a> {
-    /// Number of the first block.
-    pub first: usize,
-    /// c and A at the beginning.
-    pub begin: (&'a [Cells], &'a [Cells]),
-    /// The last stage.
-    pub last: (&'a [Cells], &'a [Cells]),
-    /// The rate dc/dt by diffusion at the last stage, and at the beginning.
-    pub rate: (&'a [Cells], &'a [Cells]),
-    /// The stage before the last, to be replaced by the new one.
-    pub into: (&'a mut [Cells], &'a mut [Cells]),
-}
-
-/// One of them.
-struct Block<'a> {
-    number: usize,
-    c: &'a Cells,
-    a: &'a Cells,
-    last: (&'a Cells, &'a Cells),
-    rate: (&'a Cells, &'a Cells),
-    into: (&'a mut Cells, &'a mut Cells),
-}
-
-/// Divides what blocks hold after a stage into free and bound.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-pub fn stage(binding: &Binding, mix: Mix, blocks: Blocks) {
-    for i in 0..blocks.into.0.len() {
-        let block = Block {
-            number: blocks.first + i,
-            c: &blocks.begin.0[i],
-            a: &blocks.begin.1[i],
-            last: (&blocks.last.0[i], &blocks.last.1[i]),
-            rate: (&blocks.rate.0[i], &blocks.rate.1[i]),
-            into: (&mut blocks.into.0[i], &mut blocks.into.1[i]),
-        };
-        binding.stage(mix, block);
+impl Mix {
+    /// The mixture of the last stage, the one before, the rate at the last and the first rate.
+    #[inline(always)]
+    pub fn of<S: Simd>(self, simd: S, [last, before, rate, first]: [S::f32s; 4]) -> S::f32s {
+        let times = |share: f32, value| simd.mul_f32s(simd.splat_f32s(share), value);
+        simd.add_f32s(
+            simd.add_f32s(times(self.mu, last), times(self.nu, before)),
+            simd.add_f32s(times(self.rate, rate), times(self.first, first)),
+        )
     }
+}
+
+/// Some cells in one stage. Pairs are of free and bound dye: changes of c and of A since the
+/// beginning of the leap.
+#[derive(Clone, Copy)]
+pub struct Pores<S: Simd> {
+    /// c at the beginning.
+    pub c: S::f32s,
+    /// A at the beginning.
+    pub a: S::f32s,
+    /// V_u.
+    pub v_u: S::f32s,
+    /// V_d.
+    pub v_d: S::f32s,
+    /// The last stage.
+    pub last: [S::f32s; 2],
+    /// The stage before the last.
+    pub before: [S::f32s; 2],
+    /// The rate dc/dt by diffusion at the last stage.
+    pub rate: S::f32s,
+    /// The same at the beginning.
+    pub first_rate: S::f32s,
 }
 
 impl Binding {
@@ -96,12 +119,9 @@ impl Binding {
         let field = |of: &[f32]| lanes.field(|l, y, x| f64::from(of[grid.index(l, y, x)]));
         Binding {
             isotherm,
+            settled: Settled::of(isotherm),
             share: share as f32,
             moved: 1.0,
-            table: match isotherm {
-                Isotherm::Freundlich { k, b } if b != 0.5 && b != 1.0 => table(k, b),
-                _ => Vec::new(),
-            },
             capacity: field(&cloth.capacity_free),
             fibre: field(&cloth.capacity_bound),
         }
@@ -112,98 +132,143 @@ impl Binding {
         f64::from(self.share)
     }
 
-    /// Divides what a block holds after a stage into free and bound.
+    /// Divides what some cells hold after a stage into free and bound.
     #[inline(always)]
-    fn stage(&self, mix: Mix, block: Block) {
-        let (v_u, v_d) = (&self.capacity[block.number], &self.fibre[block.number]);
-        match self.isotherm {
-            Isotherm::Partition { k } => {
-                let k = k as f32;
-                divide(self, mix, block, (v_u, v_d), |u, _| k * u / (1.0 + k));
+    pub fn stage<S: Simd>(&self, simd: S, mix: Mix, pores: Pores<S>) -> [S::f32s; 2] {
+        let Pores {
+            c,
+            a,
+            v_u,
+            v_d,
+            last: [free, bound],
+            before: [free_before, bound_before],
+            rate,
+            first_rate,
+        } = pores;
+        let zero = simd.splat_f32s(0.0);
+        let add = |a, b| simd.add_f32s(a, b);
+        let sub = |a, b| simd.sub_f32s(a, b);
+        let mul = |a, b| simd.mul_f32s(a, b);
+        let min = |a, b| simd.min_f32s(a, b);
+        let max = |a, b| simd.max_f32s(a, b);
+        let splat = |value: f32| simd.splat_f32s(value);
+
+        // The total changes by diffusion alone.
+        let all = add(mul(v_u, free), bound);
+        let all_before = add(mul(v_u, free_before), bound_before);
+        let flows = [mul(v_u, rate), mul(v_u, first_rate)];
+        let change = mix.of(simd, [all, all_before, flows[0], flows[1]]);
+        let total = max(add(add(mul(v_u, c), a), change), zero);
+
+        // Binding at its own rate.
+        let moved = add(add(c, free), mul(splat(self.moved), rate));
+        let moved_first = add(c, mul(splat(self.moved), first_rate));
+        let speed = mul(splat(self.share), v_u);
+        let speeds = match self.settled {
+            Settled::Most(most) => {
+                let room = max(sub(min(splat(most), v_d), a), zero);
+                let left = max(sub(room, bound), zero);
+                [mul(speed, left), mul(speed, room)]
             }
-            Isotherm::Freundlich { k, b: 1.0 } => {
-                let k = k as f32;
-                divide(self, mix, block, (v_u, v_d), |u, _| k * u / (1.0 + k));
+            _ => [speed, speed],
+        };
+        let speeds = [mul(speeds[0], moved), mul(speeds[1], moved_first)];
+        let grown = mix.of(simd, [bound, bound_before, speeds[0], speeds[1]]);
+
+        // But never beyond the limit.
+        let limit = min(self.settled(simd, total, v_d), v_d);
+        let grown = max(min(grown, sub(limit, a)), zero);
+        // Divided, for V_u·(1/V_u) is not quite 1, always to the same side; where there is no room at
+        // all nothing stays.
+        let stays = simd.div_f32s(sub(change, grown), max(v_u, splat(1e-30)));
+        [stays, grown].map(|change| without_nothing(simd, change))
+    }
+
+    /// What is bound of a total once the isotherm is met.
+    #[inline(always)]
+    fn settled<S: Simd>(&self, simd: S, u: S::f32s, v_d: S::f32s) -> S::f32s {
+        let add = |a, b| simd.add_f32s(a, b);
+        let sub = |a, b| simd.sub_f32s(a, b);
+        let mul = |a, b| simd.mul_f32s(a, b);
+        let splat = |value: f32| simd.splat_f32s(value);
+        match &self.settled {
+            Settled::Share(share) => mul(splat(*share), u),
+            Settled::Root(square) => {
+                // A² + k²·A − k²·U = 0; this form loses no digits where U is small beside k².
+                let k2 = splat(*square);
+                let root = add(splat(square * square), mul(splat(4.0 * square), u));
+                let double = mul(splat(2.0 * square), u);
+                simd.div_f32s(double, add(k2, simd.sqrt_f32s(root)))
             }
-            Isotherm::Freundlich { k, b: 0.5 } => {
-                // A² + k²·A − k²·U = 0.
-                let square = (k * k) as f32;
-                divide(self, mix, block, (v_u, v_d), |u, _| {
-                    // This form loses no digits where U is small beside k².
-                    2.0 * square * u / (square + (square * square + 4.0 * square * u).sqrt())
-                });
+            Settled::Langmuir(kl) => {
+                // K·φ² + (1 + K·V_d − K·U)·φ − U = 0.
+                let (one, k) = (splat(1.0), splat(*kl));
+                let p = add(one, mul(k, sub(v_d, u)));
+                let root = simd.sqrt_f32s(add(mul(p, p), mul(splat(4.0 * kl), u)));
+                let positive = simd.less_than_f32s(splat(0.0), p);
+                // Each form where it loses no digits.
+                let over = simd.select_f32s(positive, mul(splat(2.0), u), sub(root, p));
+                let under = simd.select_f32s(positive, add(p, root), splat(2.0 * kl));
+                let filled = mul(k, simd.div_f32s(over, under));
+                simd.div_f32s(mul(v_d, filled), add(one, filled))
             }
-            Isotherm::Freundlich { .. } => {
-                divide(self, mix, block, (v_u, v_d), |u, _| self.look_up(u));
-            }
-            Isotherm::Langmuir { kl } => {
-                let kl = kl as f32;
-                divide(self, mix, block, (v_u, v_d), |u, v_d| {
-                    // K·φ² + (1 + K·V_d − K·U)·φ − U = 0.
-                    let p = 1.0 + kl * (v_d - u);
-                    let root = (p * p + 4.0 * kl * u).sqrt();
-                    let free = if p > 0.0 {
-                        2.0 * u / (p + root)
-                    } else {
-                        (root - p) / (2.0 * kl)
-                    };
-                    v_d * kl * free / (1.0 + kl * free)
-                });
-            }
-            Isotherm::Saturating { most, .. } => {
-                saturate(self, mix, block, (v_u, v_d), most as f32);
+            Settled::Most(most) => simd.min_f32s(u, splat(*most)),
+            Settled::Table(table) => {
+                let mut lanes = [0.0; LANES];
+                S::as_mut_simd_f32s(&mut lanes).0[0] = u;
+                for u in &mut lanes[..S::F32_LANES] {
+                    *u = look_up(table, *u);
+                }
+                S::as_simd_f32s(&lanes).0[0]
             }
         }
     }
 
-    fn look_up(&self, total: f32) -> f32 {
-        let place = (total.max(0.0) / LARGEST).sqrt() * ENTRIES as f32;
-        let entry = (place as usize).min(ENTRIES - 1);
-        let (low, high) = (self.table[entry], self.table[entry + 1]);
-        low + (high - low) * (place - entry as f32)
-    }
-
     /// The growth of bound dye in a kept cell since the beginning.
-    pub fn stage_in_kept(&self, mix: Mix, kept: Kept) -> f32 {
-        let Kept {
-            moved,
-            moved_first,
-            v_d,
+    pub fn stage_in_kept(&self, mix: Mix, cell: &HeldCell, kept: KeptPore) -> f32 {
+        let KeptPore {
+            c,
             a,
+            rates,
             last,
             before,
         } = kept;
+        let v_u = cell.capacity as f32;
+        let v_d = self.fibre[cell.block].0[cell.layer][cell.lane];
+        // φ when dye has moved, before supply tops it up.
+        let [moved, moved_first] = rates.map(|rate| (v_u * (c + self.moved * rate)).max(0.0));
         let limit = self.isotherm.limit(moved, v_d).min(v_d);
+        let room = limit - a;
         let rate = |free: f32, grown: f32| match self.isotherm {
-            Isotherm::Saturating { .. } => self.share * (limit - a - grown).max(0.0) * free,
+            Isotherm::Saturating { .. } => self.share * (room - grown).max(0.0) * free,
             _ => self.share * free,
         };
         let drive = mix.rate * rate(moved, last) + mix.first * rate(moved_first, 0.0);
         let grown = mix.mu * last + mix.nu * before + drive;
-        grown.min(limit - a).max(0.0)
-    }
-
-    /// V_d of one cell.
-    pub fn fibre(&self, block: usize, layer: usize, lane: usize) -> f32 {
-        self.fibre[block].0[layer][lane]
+        grown.min(room).max(0.0)
     }
 }
 
 /// A kept cell in one stage.
 #[derive(Debug, Clone, Copy)]
-pub struct Kept {
-    /// φ when dye has moved, before supply tops it up: at the last stage.
-    pub moved: f32,
-    /// The same at the beginning of the leap.
-    pub moved_first: f32,
-    /// V_d.
-    pub v_d: f32,
+pub struct KeptPore {
+    /// The concentration that is kept.
+    pub c: f32,
     /// A at the beginning.
     pub a: f32,
-    /// The growth at the last stage, and at the one before.
+    /// The rates at which its neighbours would fill it: at the last stage, and at the beginning.
+    pub rates: [f32; 2],
+    /// The growth of A at the last stage.
     pub last: f32,
-    /// The growth at the stage before the last.
+    /// And at the stage before.
     pub before: f32,
+}
+
+fn look_up(table: &[f32], total: f32) -> f32 {
+    let place = (total / LARGEST).sqrt() * ENTRIES as f32;
+    let entry = (place as usize).min(ENTRIES - 1);
+    let (low, high) = (table[entry], table[entry + 1]);
+    low + (high - low) * (place - entry as f32)
 }
 
 /// The settled amounts A = k·(U − A)ᵇ, by bisection.
@@ -225,64 +290,4 @@ fn table(k: f64, b: f64) -> Vec<f32> {
         share * share * f64::from(LARGEST)
     };
     (0..=ENTRIES).map(|i| settled(total(i)) as f32).collect()
-}
-
-#[inline(always)]
-fn divide(
-    binding: &Binding,
-    mix: Mix,
-    block: Block,
-    (v_u, v_d): (&Cells, &Cells),
-    settled: impl Fn(f32, f32) -> f32,
-) {
-    let share = binding.share;
-    for l in 0..2 {
-        for i in 0..LANES {
-            let at = |cells: &Cells| cells.0[l][i];
-            let (v_u, v_d, c, a) = (at(v_u), at(v_d), at(block.c), at(block.a));
-            let (free, bound) = (at(block.last.0), at(block.last.1));
-            let (free_before, bound_before) = (at(block.into.0), at(block.into.1));
-            let flow = v_u * (mix.rate * at(block.rate.0) + mix.first * at(block.rate.1));
-            let change =
-                mix.mu * (v_u * free + bound) + mix.nu * (v_u * free_before + bound_before) + flow;
-            let total = v_u * c + a + change;
-            let moved = c + free + binding.moved * at(block.rate.0);
-            let moved_first = c + binding.moved * at(block.rate.1);
-            let drive = share * v_u * (mix.rate * moved + mix.first * moved_first);
-            let grown = mix.mu * bound + mix.nu * bound_before + drive;
-            let limit = settled(total.max(0.0), v_d).min(v_d);
-            let grown = grown.min(limit - a).max(0.0);
-            block.into.1.0[l][i] = if grown > NOTHING { grown } else { 0.0 };
-            let stays = (change - grown) / v_u;
-            block.into.0.0[l][i] = if stays.abs() > NOTHING { stays } else { 0.0 };
-        }
-    }
-}
-
-/// After paper B: ΔA = α_d·(a_d − A)·φ a step.
-#[inline(always)]
-fn saturate(binding: &Binding, mix: Mix, block: Block, (v_u, v_d): (&Cells, &Cells), most: f32) {
-    let speed = binding.share;
-    for l in 0..2 {
-        for i in 0..LANES {
-            let at = |cells: &Cells| cells.0[l][i];
-            let (v_u, c, a) = (at(v_u), at(block.c), at(block.a));
-            let room = (most.min(at(v_d)) - a).max(0.0);
-            let (free, bound) = (at(block.last.0), at(block.last.1));
-            let (free_before, bound_before) = (at(block.into.0), at(block.into.1));
-            let flow = v_u * (mix.rate * at(block.rate.0) + mix.first * at(block.rate.1));
-            let change =
-                mix.mu * (v_u * free + bound) + mix.nu * (v_u * free_before + bound_before) + flow;
-            let total = v_u * c + a + change;
-            let rate = |c: f32, grown: f32| speed * (room - grown).max(0.0) * v_u * c;
-            let moved = c + free + binding.moved * at(block.rate.0);
-            let moved_first = c + binding.moved * at(block.rate.1);
-            let drive = mix.rate * rate(moved, bound) + mix.first * rate(moved_first, 0.0);
-            let grown = mix.mu * bound + mix.nu * bound_before + drive;
-            let grown = grown.min(room).min(total - a).max(0.0);
-            block.into.1.0[l][i] = if grown > NOTHING { grown } else { 0.0 };
-            let stays = (change - grown) / v_u;
-            block.into.0.0[l][i] = if stays.abs() > NOTHING { stays } else { 0.0 };
-        }
-    }
 }

@@ -13,6 +13,22 @@ pub fn limit(row: &mut [Cells], ways: &[Ways]) -> bool {
     (0..2).all(|layer| limit_layer(row, ways, layer))
 }
 
+/// Brings cells within the bounds whatever it takes. Returns how much dye that took out of them.
+pub fn clip(cells: &mut [Cells], ways: &[Ways]) -> f64 {
+    let mut taken = 0.0;
+    for (block, way) in cells.iter_mut().zip(ways) {
+        let all = block.0.as_flattened_mut().iter_mut();
+        for (c, per_capacity) in all.zip(way.per_capacity.as_flattened()) {
+            let within = c.clamp(0.0, 1.0);
+            if within != *c && *per_capacity > 0.0 {
+                taken += (f64::from(*c) - f64::from(within)) / f64::from(*per_capacity);
+            }
+            *c = within;
+        }
+    }
+    taken
+}
+
 fn limit_layer(row: &mut [Cells], ways: &[Ways], layer: usize) -> bool {
     let outside = |c: &f32| !(0.0..=1.0).contains(c);
     if !row.iter().any(|block| block.0[layer].iter().any(outside)) {
@@ -91,6 +107,25 @@ mod tests {
         assert!((held(&row) - before).abs() < 1e-6);
         let all = row.iter().flat_map(|block| block.0.as_flattened());
         assert!(all.into_iter().all(|c| (0.0..=1.0).contains(c)));
+    }
+
+    #[test]
+    fn what_is_clipped_is_what_the_cells_lose() {
+        let way = Ways {
+            per_capacity: [[2.0; LANES]; 2],
+            ..Ways::SHUT
+        };
+        let mut cells = [Cells([[1.0; LANES]; 2])];
+        cells[0].0[0][1] = 1.5;
+        cells[0].0[1][2] = -0.25;
+        assert_eq!(clip(&mut cells, &[way]), 0.5 / 2.0 - 0.25 / 2.0);
+        assert!(
+            cells[0]
+                .0
+                .as_flattened()
+                .iter()
+                .all(|c| (0.0..=1.0).contains(c))
+        );
     }
 
     #[test]

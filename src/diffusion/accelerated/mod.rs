@@ -14,7 +14,7 @@
 //! **Conservation.** Stages are sums of flows that cross a face both ways ([`kernel`](super::kernel)); what flows
 //! into kept cells is followed with them ([`held`](super::held)) and booked. **Bounds.** Concentrations that
 //! leave 0…1 by more than a tenth of the tolerance shorten the leap; what is left of rounding is put
-//! right without loss ([`limiter`]).
+//! right without loss ([`limiter`]), or, where the whole cloth is full, taken out and booked.
 
 mod binding;
 mod limiter;
@@ -23,18 +23,19 @@ mod stiffness;
 mod work;
 
 use std::ops::Range;
+use std::sync::atomic::AtomicU32;
 
 use bevy::prelude::*;
 use rayon::prelude::*;
 
 use self::binding::{Binding, Mix};
-use self::work::{Law, RatesOf, Stages};
+use self::work::{Judge, Law, RatesOf, Stages};
 use super::Faces;
 use crate::cloth::Cloth;
 use crate::diffusion::held::Held;
 use crate::diffusion::kernel::WeiszZollinger;
 use crate::diffusion::lanes::{Cells, LANES, Lanes, Ways, unpack_row};
-use crate::diffusion::tiles::{self, Level, PASS};
+use crate::diffusion::tiles::{self, Level};
 
 /// What the process does while a leap lasts.
 #[derive(Debug, Clone, Copy)]
@@ -71,7 +72,10 @@ pub struct Leap {
     held: Held,
     /// What flowed into each kept cell: at the last stage, and room for another.
     flowed: [Vec<f64>; 2],
-    /// What flowed into all kept cells by diffusion, and what they bound, in the whole leap.
+    /// What had to be taken out of the cloth at the end of the leap, for it had no room.
+    clipped: f64,
+    /// What flowed into all kept cells by diffusion (and was clipped), and what they bound, in the
+    /// whole leap.
     taken: f64,
     bound: f64,
     /// What of it is in the ledger already.
@@ -145,6 +149,7 @@ impl Leap {
             rate: [fresh(), fresh()],
             held: Held::default(),
             flowed: [Vec::new(), Vec::new()],
+            clipped: 0.0,
             taken: 0.0,
             bound: 0.0,
             booked: 0.0,
@@ -202,24 +207,39 @@ impl Leap {
         let all = self.binding.is_some();
         self.held = Held::new(self.lanes, &self.ways, kept, all);
         self.flowed = [0, 1].map(|_| vec![0.0; self.held.rim.len()]);
-        self.find_rates();
+        self.find_rates(None);
     }
 
-    /// Finds the rates at the end of the leap.
-    fn find_rates(&mut self) {
+    /// Finds the rates at the end of the leap. Returns the estimated error of one of `steps` steps,
+    /// if there was any.
+    fn find_rates(&mut self, steps: Option<f64>) -> f64 {
+        let [c0, c1] = &mut self.c;
+        let [rate0, rate1] = &mut self.rate;
+        let binds = self.binding.is_some();
+        let judge = steps.map(|steps| Judge {
+            begin: c0,
+            first_rate: rate0,
+            change: binds.then_some(&self.a[2]),
+            steps,
+            held: &self.held,
+            worst: AtomicU32::new(0),
+        });
         let work = RatesOf {
             lanes: self.lanes,
             ways: &self.ways,
             law: self.law,
+            judge: judge.as_ref(),
         };
         let level = |free| Level {
             free,
             bound: &mut [],
             held: &mut [],
         };
-        tiles::pass(&work, 1, [level(&mut self.c[1]), level(&mut self.rate[1])]);
+        tiles::pass(&work, 1, [level(c1), level(rate1)]);
+        let worst = judge.map_or(0, |judge| judge.worst.into_inner());
         self.held.take_rates(&mut self.rate[1]);
         self.evaluations += 1;
+        f64::from(f32::from_bits(worst))
     }
 
     /// Leaps on from the end of the last leap, but not beyond `limit`.
@@ -283,7 +303,8 @@ impl Leap {
         self.stages(&mixes);
         self.evaluations += mixes.len() as u64;
         let outcome = self.finish(h);
-        self.taken = self.flowed[0].iter().sum::<f64>() + h * self.held.deep_inflow();
+        let flowed: f64 = self.flowed[0].iter().sum();
+        self.taken = flowed + h * self.held.deep_inflow() + self.clipped;
         self.bound = self.kept_bound();
         self.booked = 0.0;
         outcome
@@ -294,42 +315,56 @@ impl Leap {
         let [c0, c1] = &mut self.c;
         let [rate0, rate1] = &mut self.rate;
         let [a0, a1, a2] = &mut self.a;
-        c1.par_iter_mut().for_each(|cells| *cells = Cells::ZERO);
-        a1.par_iter_mut().for_each(|cells| *cells = Cells::ZERO);
-        a2.par_iter_mut().for_each(|cells| *cells = Cells::ZERO);
         for flowed in &mut self.flowed {
             flowed.fill(0.0);
         }
-        for pass in mixes.chunks(PASS) {
-            let work = Stages {
-                lanes: self.lanes,
-                ways: &self.ways,
-                law: self.law,
-                held: &self.held,
-                begin: (c0, a0),
-                first_rate: rate0,
-                binding: self.binding.as_ref(),
-                mixes: pass,
-            };
-            let [now, other] = &mut self.flowed;
-            let levels = [
-                Level {
-                    free: c1,
-                    bound: a1,
-                    held: now,
-                },
-                Level {
-                    free: rate1,
-                    bound: a2,
-                    held: other,
-                },
-            ];
-            tiles::pass(&work, pass.len(), levels);
-            if pass.len() % 2 == 1 {
-                std::mem::swap(c1, rate1);
-                std::mem::swap(a1, a2);
-                self.flowed.swap(0, 1);
+        let clear = |cells: &mut Vec<Cells>| {
+            cells.par_iter_mut().for_each(|cells| *cells = Cells::ZERO);
+        };
+        clear(rate1);
+        let mixes = if self.law == Law::Fick && self.binding.is_none() {
+            // Before the first stage nothing has changed: it is the first rate, times a number.
+            let share = mixes[0].rate + mixes[0].first;
+            let cells = c1.par_iter_mut().zip(&*rate0);
+            cells.for_each(|(change, rate)| *change = rate.times(share));
+            for (flowed, cell) in self.flowed[0].iter_mut().zip(&self.held.rim) {
+                *flowed = cell.capacity * f64::from(share) * cell.rate;
             }
+            &mixes[1..]
+        } else {
+            clear(c1);
+            clear(a1);
+            clear(a2);
+            mixes
+        };
+        let work = Stages {
+            lanes: self.lanes,
+            ways: &self.ways,
+            law: self.law,
+            held: &self.held,
+            begin: (c0, a0),
+            first_rate: rate0,
+            binding: self.binding.as_ref(),
+            mixes,
+        };
+        let [now, other] = &mut self.flowed;
+        let levels = [
+            Level {
+                free: c1,
+                bound: a1,
+                held: now,
+            },
+            Level {
+                free: rate1,
+                bound: a2,
+                held: other,
+            },
+        ];
+        tiles::pass(&work, mixes.len(), levels);
+        if mixes.len() % 2 == 1 {
+            std::mem::swap(c1, rate1);
+            std::mem::swap(a1, a2);
+            self.flowed.swap(0, 1);
         }
     }
 
@@ -357,7 +392,7 @@ impl Leap {
                 });
         }
         let rows = c1.par_chunks_mut(blocks).zip(c0.par_chunks(blocks));
-        let beyond = rows
+        let (beyond, within) = rows
             .zip(self.ways.par_chunks(blocks))
             .map(|((row, begin), ways)| {
                 let mut beyond = 0.0_f32;
@@ -367,35 +402,19 @@ impl Leap {
                         beyond = beyond.max(-*c).max(*c - 1.0);
                     }
                 }
-                if beyond > 0.0 && !limiter::limit(row, ways) {
-                    beyond = 1.0;
-                }
-                beyond
+                (beyond, beyond == 0.0 || limiter::limit(row, ways))
             })
-            .reduce(|| 0.0, f32::max);
-        self.find_rates();
-        let [c0, c1] = &self.c;
-        let change = &self.a[2];
-        let [rate0, rate1] = &self.rate;
-        let third = (h / 3.0) as f32;
-        let error = (0..c1.len())
-            .into_par_iter()
-            .with_min_len(blocks)
-            .map(|b| {
-                let mut worst = 0.0_f32;
-                for l in 0..2 {
-                    for i in 0..LANES {
-                        let at = |cells: &[Cells]| cells[b].0[l][i];
-                        let change = if binds { at(change) } else { at(c1) - at(c0) };
-                        let rates = third * (at(rate0) + at(rate1));
-                        worst = worst.max((rates - 2.0 / 3.0 * change).abs());
-                    }
-                }
-                worst
-            })
-            .reduce(|| 0.0, f32::max);
+            .reduce(|| (0.0, true), |a, b| (a.0.max(b.0), a.1 && b.1));
+        // Where a row is full to the brim, the rest of the cloth has room for what rounding left; and
+        // if all of it is full, what has no room is taken out, and booked.
+        self.clipped = if within || limiter::limit(c1, &self.ways) {
+            0.0
+        } else {
+            limiter::clip(c1, &self.ways)
+        };
+        let error = self.find_rates(Some(h));
         Outcome {
-            error: f64::from(error) / self.tolerance,
+            error: error / self.tolerance,
             beyond: f64::from(beyond) / self.tolerance,
         }
     }
@@ -472,6 +491,9 @@ impl Leap {
     /// Concentrations in a row at the share `t` of the leap: what is free of the total.
     fn row_at(&self, y: usize, t: f64, cubic: Cubic) -> Vec<Cells> {
         let row = y * self.lanes.blocks..(y + 1) * self.lanes.blocks;
+        if t == 1.0 {
+            return self.c[1][row].to_vec();
+        }
         let now = |b: usize| {
             let [c0, c1] = [&self.c[0][b], &self.c[1][b]];
             let [r0, r1] = [&self.rate[0][b], &self.rate[1][b]];
