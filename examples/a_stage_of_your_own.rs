@@ -43,7 +43,8 @@ fn bleach(
     for i in 0..dye.concentration.len() {
         let faded = dye.concentration[i] * stays;
         let grown = dye.bring(i, faded);
-        ledger.book(grown * f64::from(cloth.capacity_free[i]));
+        let (layer, y, x) = cloth.grid.place(i);
+        ledger.book(grown * f64::from(cloth.capacity_free(layer, y, x)));
     }
 }
 

@@ -141,11 +141,30 @@ fn take(pore: Pore, gained: f32, limit: f32) -> Pore {
 /// Cells that one task binds.
 const CELLS_A_TASK: usize = 1 << 14;
 
+/// The capacities of every cell, for steps that need them again and again.
+#[derive(Resource, Debug, Clone)]
+pub struct Capacities {
+    /// V_u.
+    pub free: Vec<f32>,
+    /// V_d.
+    pub bound: Vec<f32>,
+}
+
+impl Capacities {
+    /// Those of a cloth.
+    pub fn of(cloth: &Cloth) -> Self {
+        Capacities {
+            free: cloth.field(|l, y, x| f64::from(cloth.capacity_free(l, y, x))),
+            bound: cloth.field(|l, y, x| f64::from(cloth.capacity_bound(l, y, x))),
+        }
+    }
+}
+
 /// One (split) step of every cell. `share` is D_ab·Δt/Δd², or α_d.
 pub fn step(
     isotherm: Isotherm,
     share: f32,
-    cloth: &Cloth,
+    capacities: &Capacities,
     per_capacity: &[f32],
     free: &mut FreeDye,
     bound: &mut BoundDye,
@@ -156,8 +175,8 @@ pub fn step(
         .zip(free.carry.par_chunks_mut(CELLS_A_TASK))
         .zip(bound.amount.par_chunks_mut(CELLS_A_TASK))
         .zip(bound.carry.par_chunks_mut(CELLS_A_TASK))
-        .zip(cloth.capacity_free.par_chunks(CELLS_A_TASK))
-        .zip(cloth.capacity_bound.par_chunks(CELLS_A_TASK))
+        .zip(capacities.free.par_chunks(CELLS_A_TASK))
+        .zip(capacities.bound.par_chunks(CELLS_A_TASK))
         .zip(per_capacity.par_chunks(CELLS_A_TASK));
     tasks.for_each(|((((((c, c_carry), a), a_carry), v_u), v_d), per_v_u)| {
         let pores = Pores {
@@ -239,6 +258,9 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         Some(_) => cloth.grid.len(),
         None => 0,
     };
+    if cells > 0 && experiment.scenario.solver() == Solver::Explicit {
+        commands.insert_resource(Capacities::of(&cloth));
+    }
     commands.insert_resource(BoundDye {
         amount: vec![0.0; cells],
         carry: match experiment.scenario.solver() {
@@ -252,7 +274,7 @@ fn adsorption(
     mut free: ResMut<FreeDye>,
     mut bound: ResMut<BoundDye>,
     clock: Res<ProcessClock>,
-    cloth: Res<Cloth>,
+    capacities: Res<Capacities>,
     conductances: Res<Conductances>,
     experiment: Res<TheExperiment>,
 ) {
@@ -263,7 +285,7 @@ fn adsorption(
     step(
         spec.isotherm,
         share as f32,
-        &cloth,
+        &capacities,
         &conductances.per_capacity,
         &mut free,
         &mut bound,

@@ -9,14 +9,14 @@ use crate::scenario::Scenario;
 /// Bytes of the program itself.
 const BYTES_AT_LEAST: u128 = 20_000_000;
 /// Bytes of every field kept for one cell of a layer, with the solver that keeps most: three of free
-/// dye, two and a half of conductances along the cloth and between the layers, capacities and their
-/// inverse, half of the resist, half of which cell is seen, and four that solvers step between.
-const BYTES_PER_CELL: u128 = 54;
+/// dye, two and a half of conductances along the cloth and between the layers, the inverse of
+/// capacities, half of the resist, which cell is seen, and four that solvers step between.
+const BYTES_PER_CELL: u128 = 46;
 /// Bytes of bound dye, of the three fields that solvers step between, and of capacities.
 const BYTES_PER_BINDING_CELL: u128 = 24;
 /// Bytes for one pixel of the picture: its shade, and its colour six times over: now, while it is
 /// made smaller for the contact sheet, and in the four frames that are on their way to the disk.
-const BYTES_PER_PIXEL: u128 = 4 + 6 * 3;
+const BYTES_PER_PIXEL: u128 = 2 + 6 * 3;
 /// Bytes of the contact sheet for each of its places, and again for the sheet as a whole.
 const BYTES_PER_SHEET_PLACE: u128 = 2 * 3 * (crate::record::LARGEST_TILE as u128).pow(2);
 /// Bytes for one cell of the fields that are recorded, free, bound and held, five times over: being

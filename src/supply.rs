@@ -133,14 +133,14 @@ impl Supplies {
                 let i = *i as usize;
                 let has_more = event.gift == Gift::Dose && dye.concentration[i] >= *concentration;
                 if !is_kept && !has_more {
-                    ledger.book(dye.bring(i, *concentration) * f64::from(cloth.capacity_free[i]));
+                    ledger.book(dye.bring(i, *concentration) * capacity(cloth, i));
                 }
             }
             self.done += 1;
         }
         for (i, concentration) in &self.kept {
             let i = *i as usize;
-            ledger.book(dye.bring(i, *concentration) * f64::from(cloth.capacity_free[i]));
+            ledger.book(dye.bring(i, *concentration) * capacity(cloth, i));
         }
     }
 
@@ -167,7 +167,7 @@ impl Supplies {
                 let i = *i as usize;
                 let missing = bath.concentration - dye.concentration[i];
                 let grown = dye.grow(i, part * share * missing);
-                ledger.book(grown * f64::from(cloth.capacity_free[i]));
+                ledger.book(grown * capacity(cloth, i));
             }
         }
     }
@@ -216,6 +216,12 @@ fn effective(holds: &[Hold], on: impl Fn(&Hold) -> bool) -> impl Iterator<Item =
     cells.reverse();
     cells.dedup_by_key(|((i, _), _)| *i);
     cells.into_iter().rev()
+}
+
+/// V_u of a cell of a field.
+fn capacity(cloth: &Cloth, i: usize) -> f64 {
+    let (layer, y, x) = cloth.grid.place(i);
+    f64::from(cloth.capacity_free(layer, y, x))
 }
 
 fn bring(
@@ -295,7 +301,7 @@ fn reached(shape: &Raster, most: f32, cloth: &Cloth) -> Vec<Cell> {
     (0..2 * layer)
         .filter_map(|i| {
             let value = shape.values[i % layer];
-            (value > 0.0 && cloth.capacity_free[i] > 0.0).then_some((i as u32, most * value))
+            (value > 0.0 && capacity(cloth, i) > 0.0).then_some((i as u32, most * value))
         })
         .collect()
 }

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{bound, concentration, dyed, experiment, go_on, ledger};
+use dyelapse::adsorption::Capacities;
 use dyelapse::prelude::*;
 use dyelapse::scenario::bundled_names;
 
@@ -88,13 +89,16 @@ fn one_way_adsorption_never_passes_the_fibre_or_the_isotherm_and_never_goes_back
     ] {
         let more = format!("adsorption: (rate: 0.2, isotherm: {isotherm})");
         let mut app = dyeing_app(wild_cloth(5, "Explicit", &more));
-        let cloth = app.world().resource::<Cloth>().clone();
         let spec = app
             .world()
             .resource::<dyelapse::schedule::TheExperiment>()
             .scenario
             .adsorption
             .unwrap();
+        let Capacities {
+            free: v_u,
+            bound: v_d,
+        } = Capacities::of(app.world().resource::<Cloth>());
         let mut before = bound(&app).to_vec();
         // A step of this cloth is split, and each part binds: look at every part.
         for _ in 0..600 {
@@ -102,14 +106,11 @@ fn one_way_adsorption_never_passes_the_fibre_or_the_isotherm_and_never_goes_back
             let free = concentration(&app);
             for (i, after) in bound(&app).iter().enumerate() {
                 assert!(*after >= before[i], "{isotherm}: dye went back");
-                assert!(
-                    *after <= cloth.capacity_bound[i],
-                    "{isotherm}: fibre is overfull"
-                );
+                assert!(*after <= v_d[i], "{isotherm}: fibre is overfull");
                 // The isotherm held for the free dye before it bound, which is more than is left.
                 let gained = after - before[i];
-                let phi = free[i] * cloth.capacity_free[i] + gained;
-                let limit = spec.isotherm.limit(phi * 1.00001, cloth.capacity_bound[i]) + 1e-20;
+                let phi = free[i] * v_u[i] + gained;
+                let limit = spec.isotherm.limit(phi * 1.00001, v_d[i]) + 1e-20;
                 assert!(
                     gained == 0.0 || *after <= limit,
                     "{isotherm}: {after} > {limit}"
@@ -135,13 +136,13 @@ fn fibre_is_never_overfull_and_never_gives_dye_back_between_the_frames_of_the_ac
     ] {
         let more = format!("adsorption: (rate: 0.2, isotherm: {isotherm})");
         let mut app = dyeing_app(wild_cloth(5, "Accelerated", &more));
-        let cloth = app.world().resource::<Cloth>().clone();
+        let v_d = Capacities::of(app.world().resource::<Cloth>()).bound;
         let mut before = bound(&app).to_vec();
         for step in (0..=400).step_by(7) {
             go_on(&mut app, step);
             for (i, after) in bound(&app).iter().enumerate() {
                 assert!(*after >= before[i], "{isotherm}: dye went back");
-                let full = cloth.capacity_bound[i] * (1.0 + 1e-6);
+                let full = v_d[i] * (1.0 + 1e-6);
                 assert!(*after <= full, "{isotherm}: fibre is overfull");
             }
             before.copy_from_slice(bound(&app));
@@ -176,7 +177,7 @@ fn a_cell_squeezed_shut_neither_holds_nor_passes_dye() {
             for y in 0..12 {
                 for x in 18..40 {
                     let i = cloth.grid.index(layer, y, x);
-                    let phi = f64::from(c[i] * cloth.capacity_free[i]);
+                    let phi = f64::from(c[i] * cloth.capacity_free(layer, y, x));
                     *(if x < 22 { &mut inside } else { &mut behind }) += phi;
                 }
             }

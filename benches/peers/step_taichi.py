@@ -6,12 +6,12 @@ ti.init(arch=ti.cpu, default_fp=ti.f32, log_level=ti.ERROR)
 
 @ti.kernel
 def step(
-    c: ti.types.ndarray(ndim=3),
-    d: ti.types.ndarray(ndim=3),
-    e: ti.types.ndarray(ndim=3),
-    s: ti.types.ndarray(ndim=3),
-    b: ti.types.ndarray(ndim=2),
-    m: ti.types.ndarray(ndim=3),
+    c: ti.template(),
+    d: ti.template(),
+    e: ti.template(),
+    s: ti.template(),
+    b: ti.template(),
+    m: ti.template(),
 ):
     for y, x in b:
         for l in ti.static(range(2)):
@@ -31,10 +31,10 @@ def step(
 def prepare(nx, ny):
     fields = []
     for array in make(nx, ny):
-        field = ti.ndarray(ti.f32, array.shape)
+        field = ti.field(ti.f32, array.shape)
         field.from_numpy(array)
         fields.append(field)
-    return fields + [ti.ndarray(ti.f32, (2, ny, nx))]
+    return fields + [ti.field(ti.f32, (2, ny, nx))]
 
 
 def advance(state, steps):

@@ -50,6 +50,12 @@ impl Grid {
         self.layer_len() == 0
     }
 
+    /// The layer, row and column of a cell of a field.
+    pub fn place(self, i: usize) -> (Layer, usize, usize) {
+        let (row, x) = (i / self.nx, i % self.nx);
+        (Layer::BOTH[row / self.ny], row % self.ny, x)
+    }
+
     /// Where a cell lies in a field.
     pub fn index(self, layer: Layer, y: usize, x: usize) -> usize {
         (layer as usize * self.ny + y) * self.nx + x

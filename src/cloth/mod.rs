@@ -2,7 +2,7 @@
 //!
 //! Paper D §4.1 and eqs 6, 9; model sections 1 and 2. The cloth does not change while it is dyed.
 //! Its yarns are few and its cells many, so what belongs to a yarn is looked up by column or row;
-//! only capacities, which resist changes cell by cell, are stored for every cell.
+//! of what differs from cell to cell only the resist is stored.
 
 mod grid;
 mod weave;
@@ -46,10 +46,17 @@ pub struct Cloth {
     pub grid: Grid,
     /// What it is woven of.
     pub parts: Parts,
-    /// V_u = P·V_max·(1−B), the most free dye a cell holds, with V_max = 1 (eq 9).
-    pub capacity_free: Vec<f32>,
-    /// V_d = (1−P)·V_max, the most dye the fibre of a cell binds; 0 in gaps (eq 6).
-    pub capacity_bound: Vec<f32>,
+    /// What lies along every row of the weft layer and every column of the warp layer.
+    lines: [Vec<Line>; 2],
+}
+
+/// What a row of the weft layer, or a column of the warp layer, has in common.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    /// P, of what its own yarn does not squeeze.
+    open: f64,
+    /// V_d.
+    fibre: f32,
 }
 
 /// What a cloth is woven of.
@@ -113,18 +120,43 @@ impl Cloth {
                 ny: parts.resist.ny,
             },
             parts,
-            capacity_free: Vec::new(),
-            capacity_bound: Vec::new(),
+            lines: [Vec::new(), Vec::new()],
         };
-        cloth.capacity_free = cloth.field(|layer, y, x| {
-            let capacity = cloth.porosity(layer, y, x) * (1.0 - cloth.volume_ratio(layer, y, x));
-            if capacity < SHUT { 0.0 } else { capacity }
-        });
-        cloth.capacity_bound = cloth.field(|layer, y, x| match cloth.yarn(layer, y, x) {
-            Some(yarn) => 1.0 - yarn.porosity,
-            None => 0.0,
-        });
+        let line = |layer: Layer, yarn: Option<&Yarn>| Line {
+            open: match yarn {
+                Some(yarn) => yarn.porosity * (1.0 - yarn.squeeze),
+                None => cloth.gap_porosity[layer as usize],
+            },
+            fibre: yarn.map_or(0.0, |yarn| 1.0 - yarn.porosity) as f32,
+        };
+        let weft = (0..cloth.grid.ny).map(|y| line(Layer::Weft, cloth.weft.at(y)));
+        let warp = (0..cloth.grid.nx).map(|x| line(Layer::Warp, cloth.warp.at(x)));
+        cloth.lines = [weft.collect(), warp.collect()];
         cloth
+    }
+
+    fn line(&self, layer: Layer, y: usize, x: usize) -> Line {
+        let across = match layer {
+            Layer::Weft => y,
+            Layer::Warp => x,
+        };
+        self.lines[layer as usize][across]
+    }
+
+    /// V_u = P·V_max·(1−B) of a cell, the most free dye that it holds, with V_max = 1 (eq 9).
+    pub fn capacity_free(&self, layer: Layer, y: usize, x: usize) -> f32 {
+        let left = 1.0 - f64::from(self.resist.at(y, x));
+        let capacity = self.line(layer, y, x).open * left;
+        if capacity < SHUT {
+            0.0
+        } else {
+            capacity as f32
+        }
+    }
+
+    /// V_d = (1−P)·V_max of a cell, the most dye that its fibre binds; 0 in gaps (eq 6).
+    pub fn capacity_bound(&self, layer: Layer, y: usize, x: usize) -> f32 {
+        self.line(layer, y, x).fibre
     }
 
     /// The yarn in a cell; none in a gap.

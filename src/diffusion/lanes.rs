@@ -129,7 +129,7 @@ impl Lanes {
     pub fn ways(self, cloth: &Cloth, faces: &Faces, step_h: f64) -> Vec<Ways> {
         let Grid { nx, ny } = self.grid;
         let scale = step_h / (cloth.cell_mm * cloth.cell_mm);
-        let capacity = |layer, y, x| f64::from(cloth.capacity_free[self.grid.index(layer, y, x)]);
+        let capacity = |layer, y, x| f64::from(cloth.capacity_free(layer, y, x));
         let mut ways = vec![Ways::SHUT; self.len()];
         ways.par_chunks_mut(self.blocks)
             .enumerate()

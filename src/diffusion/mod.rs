@@ -85,15 +85,17 @@ impl FreeDye {
 
     /// The free dye in the whole cloth: Σ φ = Σ c·V_u, in cell volumes.
     pub fn total(&self, cloth: &Cloth) -> f64 {
+        let Grid { nx, ny } = cloth.grid;
         let amounts = |of: &[f32]| {
-            let parts = of.par_chunks(CELLS_A_SUM);
-            let parts = parts.zip(cloth.capacity_free.par_chunks(CELLS_A_SUM));
-            let part = |(of, v_u): (&[f32], &[f32])| -> f64 {
-                let amount = |(c, v_u): (&f32, &f32)| f64::from(*c) * f64::from(*v_u);
-                of.iter().zip(v_u).map(amount).sum()
+            let row = |(row, cells): (usize, &[f32])| -> f64 {
+                let (layer, y) = (Layer::BOTH[row / ny], row % ny);
+                let amount = |(x, c): (usize, &f32)| {
+                    f64::from(*c) * f64::from(cloth.capacity_free(layer, y, x))
+                };
+                cells.iter().enumerate().map(amount).sum()
             };
             // Collected in order, so that no number of threads changes the sum.
-            let sums: Vec<f64> = parts.map(part).collect();
+            let sums: Vec<f64> = of.par_chunks(nx.max(1)).enumerate().map(row).collect();
             sums.iter().sum::<f64>()
         };
         amounts(&self.concentration) + amounts(&self.carry)
@@ -152,7 +154,7 @@ impl Conductances {
     pub fn new(cloth: &Cloth, faces: &Faces, step_h: f64, most_bound_a_step: f64) -> Self {
         let grid = cloth.grid;
         let scale = step_h / (cloth.cell_mm * cloth.cell_mm);
-        let capacity = |layer, y, x| f64::from(cloth.capacity_free[grid.index(layer, y, x)]);
+        let capacity = |layer, y, x| f64::from(cloth.capacity_free(layer, y, x));
         let east = cloth.field(|layer, y, x| {
             if x + 1 == grid.nx {
                 return 0.0;

@@ -97,12 +97,10 @@ pub(super) fn write_cloth(
         archive.add("face_y", &[2, ny - 1, nx], y)?;
         let z = one_layer().map(|(y, x)| faces.z(y, x) as f32);
         archive.add("face_z", &[ny, nx], z)?;
-        archive.add("capacity_free", &whole, cloth.capacity_free.iter().copied())?;
-        archive.add(
-            "capacity_bound",
-            &whole,
-            cloth.capacity_bound.iter().copied(),
-        )?;
+        let free = cells(grid, 0, 0).map(|(l, y, x)| cloth.capacity_free(l, y, x));
+        archive.add("capacity_free", &whole, free)?;
+        let bound = cells(grid, 0, 0).map(|(l, y, x)| cloth.capacity_bound(l, y, x));
+        archive.add("capacity_bound", &whole, bound)?;
         let porosity = cells(grid, 0, 0).map(|(l, y, x)| cloth.porosity(l, y, x) as f32);
         archive.add("porosity", &whole, porosity)?;
         let resist = cells(grid, 0, 0).map(|(l, y, x)| cloth.volume_ratio(l, y, x) as f32);
@@ -149,15 +147,15 @@ impl State {
     pub fn take(dyed: &mut Dyed, step: u64, hours: f64) -> Self {
         let cloth = &dyed.cloth;
         let amounts = |concentration: &[f32]| -> Vec<f32> {
-            let both = concentration.iter().zip(&cloth.capacity_free);
-            both.map(|(c, v_u)| c * v_u).collect()
+            let both = concentration.iter().zip(cells(cloth.grid, 0, 0));
+            both.map(|(c, (l, y, x))| c * cloth.capacity_free(l, y, x))
+                .collect()
         };
-        let cells = cloth.grid.len();
-        let held = dyed.supplies.held(step, cells);
+        let held = dyed.supplies.held(step, cloth.grid.len());
         State {
             grid: cloth.grid,
             free: amounts(&dyed.free.concentration),
-            bound: (0..cells).map(|i| dyed.bound.at(i)).collect(),
+            bound: (0..cloth.grid.len()).map(|i| dyed.bound.at(i)).collect(),
             held: amounts(&held),
             step,
             hours,

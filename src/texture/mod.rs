@@ -8,10 +8,11 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 pub use colour::{Hsv, Ramp, Rgb, between, to_rgb};
+use shade::Shade;
 pub use shade::seen;
 
 use crate::adsorption::BoundDye;
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, Layer};
 use crate::diffusion::FreeDye;
 use crate::scenario::{Scenario, Show};
 use crate::schedule::{DyeFrame, FrameSet, Prepare, PrepareSet, TheExperiment};
@@ -35,10 +36,10 @@ pub struct Scale(pub u32);
 pub struct Texture {
     /// Pixels along one side of a cell.
     pub scale: usize,
-    /// For every position `(y, x)`, the index of the cell that gives it its colour.
-    pub seen: Vec<u32>,
+    /// For every position `(y, x)`, the cell that gives it its colour.
+    seen: Vec<Seen>,
     /// The shade of every pixel, row by row.
-    pub shade: Vec<f32>,
+    shade: Vec<Shade>,
     /// Colours by amount of dye.
     pub ramp: Ramp,
     /// Which dye is shown.
@@ -56,14 +57,37 @@ pub struct Picture {
     pub rgb: Vec<u8>,
 }
 
+/// Which cell of its row gives a position its colour, in two bytes: the layer in the highest bit,
+/// and how many columns to the left.
+#[derive(Debug, Clone, Copy)]
+struct Seen(u16);
+
+impl Seen {
+    const WARP: u16 = 1 << 15;
+
+    fn new((layer, column): (Layer, usize), x: usize) -> Self {
+        // Nobody could tell by which yarn a gap of 32,768 cells is shaded.
+        let left = (x - column).min(usize::from(Self::WARP) - 1) as u16;
+        match layer {
+            Layer::Weft => Seen(left),
+            Layer::Warp => Seen(left | Self::WARP),
+        }
+    }
+
+    fn cell(self, x: usize) -> (Layer, usize) {
+        let layer = Layer::BOTH[usize::from(self.0 >> 15)];
+        (layer, x - usize::from(self.0 & !Self::WARP))
+    }
+}
+
 impl Texture {
     /// Prepares pictures of a cloth at `scale` pixels a cell.
     pub fn new(cloth: &Cloth, scenario: &Scenario, scale: usize) -> Self {
         let nx = cloth.grid.nx;
-        let mut seen = vec![0; cloth.grid.layer_len()];
+        let mut seen = vec![Seen(0); cloth.grid.layer_len()];
         seen.par_chunks_mut(nx).enumerate().for_each(|(y, row)| {
             for (x, cell) in row.iter_mut().enumerate() {
-                *cell = shade::coloured_by(cloth, y, x) as u32;
+                *cell = Seen::new(shade::coloured_by(cloth, y, x), x);
             }
         });
         Texture {
@@ -81,9 +105,14 @@ impl Texture {
         picture.width = nx * scale;
         picture.height = ny * scale;
         picture.rgb.resize(picture.width * picture.height * 3, 0);
-        let amount = |i: usize| match self.show {
-            Show::FreeAndBound => free.concentration[i] * cloth.capacity_free[i] + bound.at(i),
-            Show::BoundOnly => bound.at(i),
+        let amount = |(layer, x): (Layer, usize), y: usize| {
+            let i = cloth.grid.index(layer, y, x);
+            match self.show {
+                Show::FreeAndBound => {
+                    free.concentration[i] * cloth.capacity_free(layer, y, x) + bound.at(i)
+                }
+                Show::BoundOnly => bound.at(i),
+            }
         };
         let width = picture.width;
         picture
@@ -94,14 +123,15 @@ impl Texture {
                 let cells = &self.seen[y * nx..][..nx];
                 let colours: Vec<Rgb> = cells
                     .iter()
-                    .map(|i| self.ramp.colour(amount(*i as usize)).map(|c| 255.0 * c))
+                    .enumerate()
+                    .map(|(x, seen)| self.ramp.colour(amount(seen.cell(x), y)).map(|c| 255.0 * c))
                     .collect();
                 for (j, row) in rows.chunks_exact_mut(width * 3).enumerate() {
                     let shades = &self.shade[(y * scale + j) * width..][..width];
                     for (px, pixel) in row.chunks_exact_mut(3).enumerate() {
                         for (channel, colour) in pixel.iter_mut().zip(colours[px / scale]) {
                             // Casting rounds down and saturates.
-                            *channel = (colour * shades[px] + 0.5) as u8;
+                            *channel = (colour * shades[px].value() + 0.5) as u8;
                         }
                     }
                 }

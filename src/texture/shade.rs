@@ -30,18 +30,36 @@ pub fn seen(cloth: &Cloth, y: usize, x: usize) -> Layer {
 
 /// The cell whose dye gives a position its colour: the one that is seen. Through a gap nothing is
 /// seen but the shaded side of the yarn beside it.
-pub(super) fn coloured_by(cloth: &Cloth, y: usize, x: usize) -> usize {
+/// It lies in the same row: its layer and column.
+pub(super) fn coloured_by(cloth: &Cloth, y: usize, x: usize) -> (Layer, usize) {
     let layer = seen(cloth, y, x);
     if cloth.fibre(layer, y, x) {
-        return cloth.grid.index(layer, y, x);
+        return (layer, x);
     }
     let (warp, number) = (&cloth.warp, cloth.warp.number(x));
-    let beside = number * warp.pitch() + warp.width - 1;
-    cloth.grid.index(Layer::Warp, y, beside)
+    (Layer::Warp, number * warp.pitch() + warp.width - 1)
+}
+
+/// A shade in two bytes: 0 to 2, far finer than the colours of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Shade(u16);
+
+impl Shade {
+    const STEPS: f32 = 32_767.5;
+
+    fn new(shade: f32) -> Self {
+        // Casting saturates.
+        Shade((shade * Self::STEPS + 0.5) as u16)
+    }
+
+    /// The shade as a number.
+    pub fn value(self) -> f32 {
+        f32::from(self.0) * (1.0 / Self::STEPS)
+    }
 }
 
 /// Draws the shade of undyed cloth at `scale` pixels a cell, row by row, 0 to about 1.
-pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<f32> {
+pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<Shade> {
     let shades = [
         YarnShade::new(look, &cloth.weft, false, seed),
         YarnShade::new(look, &cloth.warp, true, seed),
@@ -49,7 +67,7 @@ pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<f32> 
     let width = cloth.grid.nx * scale;
     let samples = SAMPLES_A_CELL.div_ceil(scale);
     let fine = (scale * samples) as f32;
-    let mut picture = vec![0.0; width * cloth.grid.ny * scale];
+    let mut picture = vec![Shade::default(); width * cloth.grid.ny * scale];
     picture
         .par_chunks_mut(width)
         .enumerate()
@@ -58,7 +76,7 @@ pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<f32> 
                 let (y, x) = (py / scale, px / scale);
                 let layer = seen(cloth, y, x);
                 if !cloth.fibre(layer, y, x) {
-                    *shade = GAP_SHADE;
+                    *shade = Shade::new(GAP_SHADE);
                     continue;
                 }
                 let yarns = &shades[layer as usize];
@@ -74,7 +92,7 @@ pub fn draw(cloth: &Cloth, look: YarnLook, seed: u64, scale: usize) -> Vec<f32> 
                 // What changes slowly along a yarn is taken once a pixel.
                 let middle = |p: usize| (p as f32 + 0.5) / scale as f32;
                 let uneven = yarns.unevenness(point(middle(py), middle(px)));
-                *shade = uneven * sum / (samples * samples) as f32;
+                *shade = Shade::new(uneven * sum / (samples * samples) as f32);
             }
         });
     picture

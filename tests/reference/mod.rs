@@ -48,7 +48,11 @@ impl Reference {
         let scale = scenario.process.step_h / (cloth.cell_mm * cloth.cell_mm);
         let at = |i: usize| (i / (nx * ny), i / nx % ny, i % nx);
         let layer_of = |l: usize| Layer::BOTH[l];
-        let v_u: Vec<f64> = cloth.capacity_free.iter().map(|v| f64::from(*v)).collect();
+        let capacities = |of: fn(&Cloth, Layer, usize, usize) -> f32| -> Vec<f64> {
+            let at = |i: usize| of(cloth, layer_of(at(i).0), at(i).1, at(i).2);
+            (0..2 * nx * ny).map(|i| f64::from(at(i))).collect()
+        };
+        let v_u: Vec<f64> = capacities(Cloth::capacity_free);
         let coefficient = |i: usize, j: usize| {
             let ((li, yi, xi), (lj, yj, xj)) = (at(i), at(j));
             let (a, b) = (
@@ -123,7 +127,7 @@ impl Reference {
             nx,
             ny,
             links,
-            v_d: cloth.capacity_bound.iter().map(|v| f64::from(*v)).collect(),
+            v_d: capacities(Cloth::capacity_bound),
             phi: vec![0.0; v_u.len()],
             bound: vec![0.0; v_u.len()],
             supplies,

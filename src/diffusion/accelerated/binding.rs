@@ -10,7 +10,7 @@
 use pulp::Simd;
 
 use super::work::without_nothing;
-use crate::cloth::{Cloth, Grid};
+use crate::cloth::Cloth;
 use crate::diffusion::held::HeldCell;
 use crate::diffusion::lanes::{Cells, LANES, Lanes};
 use crate::scenario::Isotherm;
@@ -115,15 +115,13 @@ pub struct Pores<S: Simd> {
 impl Binding {
     /// Binding on a cloth; `share` is what [`share_a_step`](crate::adsorption::share_a_step) says.
     pub fn new(isotherm: Isotherm, share: f64, cloth: &Cloth, lanes: Lanes) -> Self {
-        let grid: Grid = lanes.grid;
-        let field = |of: &[f32]| lanes.field(|l, y, x| f64::from(of[grid.index(l, y, x)]));
         Binding {
             isotherm,
             settled: Settled::of(isotherm),
             share: share as f32,
             moved: 1.0,
-            capacity: field(&cloth.capacity_free),
-            fibre: field(&cloth.capacity_bound),
+            capacity: lanes.field(|l, y, x| f64::from(cloth.capacity_free(l, y, x))),
+            fibre: lanes.field(|l, y, x| f64::from(cloth.capacity_bound(l, y, x))),
         }
     }
 
