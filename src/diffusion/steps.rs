@@ -1,7 +1,7 @@
 //! Many explicit steps in one pass through memory.
 //!
 //! The same forward Euler steps as [`explicit`](super::explicit), with the same carry, where nothing
-//! but diffusion happens between them and supply keeps what it keeps: so the rows of a dozen
+//! but diffusion happens between them and supply keeps what it keeps: so the rows of many
 //! steps can follow each other through the cache ([`tiles`]).
 
 use bevy::prelude::*;

@@ -19,14 +19,14 @@ use super::kernel::{Passage, Row, Southwards, Take};
 use super::lanes::{Cells, Lanes, Ways};
 
 /// Stages of a wave.
-const WAVE: usize = 12;
+const WAVE: usize = 16;
 
 /// Blocks in a strip: with [`WAVE`] stages they fill about a megabyte.
 const STRIP: usize = 64;
 
 /// Rows of a tile that goes through [`LONG`] stages.
 const HIGH: usize = 150;
-const LONG: usize = 4 * WAVE;
+const LONG: usize = 3 * WAVE;
 
 /// The values of one stage.
 pub struct Level<'a> {
