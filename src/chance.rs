@@ -28,6 +28,18 @@ pub enum Purpose {
     WarpLook = 7,
     /// Look of each weft yarn.
     WeftLook = 8,
+    /// Width of each warp yarn.
+    WarpWidth = 9,
+    /// Width of each weft yarn.
+    WeftWidth = 10,
+    /// Where the dyed sections of each warp yarn lie (kasuri).
+    WarpKasuri = 11,
+    /// Where the dyed sections of each weft yarn lie (kasuri).
+    WeftKasuri = 12,
+    /// The unit yarns of fractal warp yarns (paper Y).
+    WarpFractal = 13,
+    /// The unit yarns of fractal weft yarns (paper Y).
+    WeftFractal = 14,
 }
 
 impl Chance {

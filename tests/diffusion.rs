@@ -73,22 +73,23 @@ fn a_drop_on_uniform_cloth_follows_the_gaussian_and_its_error_falls_with_the_cel
 
 /// A small uneven cloth whose first and last cells are yarn, so that it can be turned over.
 fn uneven(nx: usize, ny: usize, gap: usize) -> Parts {
-    let yarns = |width: usize, cells: usize, salt: usize| Yarns {
-        width,
-        gap,
-        yarns: (0..cells.div_ceil(width + gap))
-            .map(|i| Yarn {
+    let yarns = |width: usize, cells: usize, salt: usize| {
+        Yarns::lay(cells, |i| {
+            let yarn = Yarn {
                 porosity: 0.2 + 0.3 * ((i * 7 + salt) % 5) as f64 / 4.0,
                 twist: 0.4 + 0.6 * ((i * 3 + salt) % 4) as f64 / 3.0,
                 squeeze: 0.1 * ((i + salt) % 3) as f64,
-            })
-            .collect(),
+                ..Yarn::default()
+            };
+            (yarn, width, gap)
+        })
     };
     Parts {
         cell_mm: 0.05,
         warp: yarns(3, nx, 1),
         weft: yarns(2, ny, 2),
         weave: Weave::Matrix(vec!["XX.X.".into(), ".X..X".into(), "X.XX.".into()]).matrix(),
+        mask: None,
         gap_porosity: [0.35, 0.45],
         resist: Raster::from_rule(nx, ny, |x, y| {
             (0.9 * (0.5 + 0.5 * (0.9 * x + 1.7 * y + 0.13 * x * y).sin())) as f32

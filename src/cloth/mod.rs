@@ -5,6 +5,7 @@
 //! of what differs from cell to cell only the resist is stored.
 
 mod grid;
+mod mask;
 mod weave;
 mod yarns;
 
@@ -14,8 +15,9 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 pub use grid::{Grid, Layer};
+pub use mask::Mask;
 pub use weave::{Face, Weave, WeaveMatrix};
-pub use yarns::{Yarn, Yarns};
+pub use yarns::{Span, Thread, Yarn, Yarns};
 
 use crate::chance::{Chance, Purpose};
 use crate::pattern::{Canvas, Raster};
@@ -70,6 +72,8 @@ pub struct Parts {
     pub weft: Yarns,
     /// Which yarn is on top at every crossing.
     pub weave: WeaveMatrix,
+    /// Where the warp is on top cell by cell, if a photograph says so rather than the weave.
+    pub mask: Option<Mask>,
     /// Porosity of the gaps in the weft layer and in the warp layer.
     pub gap_porosity: [f64; 2],
     /// How far every place is squeezed: the volume ratio B of paper D eq 9, for both layers.
@@ -95,18 +99,21 @@ impl Cloth {
             porosity: Purpose::WarpPorosity,
             twist: Purpose::WarpTwist,
             squeeze: Purpose::WarpSqueeze,
+            width: Purpose::WarpWidth,
         };
         let weft_draws = Draws {
             porosity: Purpose::WeftPorosity,
             twist: Purpose::WeftTwist,
             squeeze: Purpose::WeftSqueeze,
+            width: Purpose::WeftWidth,
         };
         let nominal = |porosity: f64| spec.gap_porosity.unwrap_or(porosity);
         Cloth::assemble(Parts {
             cell_mm: spec.cell_mm,
-            warp: Yarns::lay(&spec.warp, spec.cell_mm, nx, chance, warp_draws),
-            weft: Yarns::lay(spec.weft(), spec.cell_mm, ny, chance, weft_draws),
+            warp: Yarns::spun(&spec.warp, spec.cell_mm, nx, chance, warp_draws, &[]),
+            weft: Yarns::spun(spec.weft(), spec.cell_mm, ny, chance, weft_draws, &[]),
             weave: spec.weave.matrix(),
+            mask: None,
             gap_porosity: [nominal(spec.weft().porosity), nominal(spec.warp.porosity)],
             resist,
         })
@@ -133,6 +140,26 @@ impl Cloth {
         let warp = (0..cloth.grid.nx).map(|x| line(Layer::Warp, cloth.warp.at(x)));
         cloth.lines = [weft.collect(), warp.collect()];
         cloth
+    }
+
+    /// The same cloth seen from its back: left and right are exchanged, and the yarns that lay beneath
+    /// are on top.
+    pub fn turned_over(&self) -> Self {
+        let (ends, picks) = (self.warp.yarns.len(), self.weft.yarns.len());
+        let up = |i: usize| !self.weave.warp_up(ends - 1 - i % ends, i / ends);
+        let Raster { nx, ny, values } = &self.resist;
+        let rows = values.chunks((*nx).max(1));
+        Cloth::assemble(Parts {
+            warp: self.warp.mirrored(),
+            weave: WeaveMatrix::new(ends, (0..ends * picks).map(up).collect()),
+            mask: self.mask.as_ref().map(Mask::turned_over),
+            resist: Raster {
+                nx: *nx,
+                ny: *ny,
+                values: rows.flat_map(|row| row.iter().rev().copied()).collect(),
+            },
+            ..self.parts.clone()
+        })
     }
 
     fn line(&self, layer: Layer, y: usize, x: usize) -> Line {
@@ -172,9 +199,12 @@ impl Cloth {
         self.yarn(layer, y, x).is_some()
     }
 
-    /// Whether the warp is on top in the cloth cell that a position lies in.
+    /// Whether the warp is on top in the cloth cell that a position lies in, or where a mask says so.
     pub fn warp_up(&self, y: usize, x: usize) -> bool {
-        self.weave.warp_up(self.warp.number(x), self.weft.number(y))
+        match &self.mask {
+            Some(mask) => mask.warp_up(y, x),
+            None => self.weave.warp_up(self.warp.number(x), self.weft.number(y)),
+        }
     }
 
     /// P of a cell, 0 to 1.

@@ -111,12 +111,7 @@ impl Weave {
                     .iter()
                     .map(|pick| pick.chars().map(|c| warp_on_top(c) == Some(true)).collect())
                     .collect();
-                let ends = rows.first().map_or(1, Vec::len).max(1);
-                WeaveMatrix {
-                    ends,
-                    picks: rows.len().max(1),
-                    warp_up: rows.concat(),
-                }
+                WeaveMatrix::new(rows.first().map_or(1, Vec::len), rows.concat())
             }
         }
     }
@@ -172,16 +167,21 @@ pub struct WeaveMatrix {
 }
 
 impl WeaveMatrix {
+    /// A repeat of so many ends, from rows of picks; `warp_up` holds at least one whole pick.
+    pub fn new(ends: usize, warp_up: Vec<bool>) -> Self {
+        WeaveMatrix {
+            ends: ends.max(1),
+            picks: (warp_up.len() / ends.max(1)).max(1),
+            warp_up,
+        }
+    }
+
     fn from_rule(ends: u32, picks: u32, rule: impl Fn(u32, u32) -> bool) -> Self {
         let warp_up = (0..picks)
             .flat_map(|p| (0..ends).map(move |e| (e, p)))
             .map(|(e, p)| rule(e, p))
             .collect();
-        WeaveMatrix {
-            ends: ends as usize,
-            picks: picks as usize,
-            warp_up,
-        }
+        WeaveMatrix::new(ends as usize, warp_up)
     }
 
     /// Whether the warp is on top where end `e` crosses pick `p`, for any end and pick of the cloth.

@@ -46,6 +46,8 @@ pub struct YarnSpec {
     pub width: Length,
     /// Width of the gap to the next yarn.
     pub gap: Length,
+    /// Each yarn multiplies its width by a random factor between these two.
+    pub vary_width: (f64, f64),
     /// P: the share of a yarn that is pores, over 0 to 1.
     pub porosity: f64,
     /// Each yarn multiplies its porosity by a random factor between these two
@@ -64,6 +66,7 @@ impl Default for YarnSpec {
         YarnSpec {
             width: Length::Cells(8.0),
             gap: Length::Cells(2.0),
+            vary_width: (1.0, 1.0),
             porosity: 0.5,
             vary_porosity: (1.0, 1.0),
             twist: 1.0,
@@ -149,6 +152,7 @@ impl YarnSpec {
         let widest = LONGEST_SIDE as f64;
         self.width.check(&at.field("width"), cell_mm, 1.0, widest)?;
         self.gap.check(&at.field("gap"), cell_mm, 0.0, widest)?;
+        at.field("vary_width").range(self.vary_width, 0.1..=10.0)?;
         at.field("porosity")
             .within(self.porosity, LEAST_POROSITY..=1.0)?;
         at.field("vary_porosity")

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use image::{ImageReader, Limits};
+use image::{ImageReader, Limits, RgbImage, imageops};
 
 use super::check::{Checker, Problem};
+use crate::cloth::Grid;
 use crate::memory;
 use crate::pattern::{Fit, Pattern, Raster};
 
@@ -13,6 +14,27 @@ use crate::pattern::{Fit, Pattern, Raster};
 #[derive(Debug, Clone, Default)]
 pub struct Images {
     rasters: BTreeMap<String, Raster>,
+    photos: BTreeMap<String, Photo>,
+}
+
+/// A photograph of cloth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Photo {
+    /// 8-bit sRGB.
+    pub rgb: RgbImage,
+}
+
+impl Photo {
+    /// The photograph with one pixel for each cell of a grid.
+    pub fn fitted(&self, fit: Fit, grid: Grid) -> Photo {
+        let (width, height) = (grid.nx as u32, grid.ny as u32);
+        let rgb = if fit == Fit::Exact || self.rgb.dimensions() == (width, height) {
+            self.rgb.clone()
+        } else {
+            imageops::resize(&self.rgb, width, height, imageops::FilterType::Triangle)
+        };
+        Photo { rgb }
+    }
 }
 
 /// Bytes for one pixel of a picture while it is loaded: decoded, in grey with alpha, and kept.
@@ -22,6 +44,11 @@ impl Images {
     /// The picture of this name, if it was loaded.
     pub fn get(&self, file: &str) -> Option<&Raster> {
         self.rasters.get(file)
+    }
+
+    /// The photograph of this name, if it was loaded.
+    pub fn photo(&self, file: &str) -> Option<&Photo> {
+        self.photos.get(file)
     }
 
     /// Bytes that loading the pictures takes at most: one after the other, and then all of them.

@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::check::{Checker, Problem};
+use crate::pattern::Fit;
 
 /// The most pixels along one side of a cell.
 pub const LARGEST_SCALE: u32 = 64;
 
 /// How the cloth is drawn (paper D §4.3).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Look", deny_unknown_fields, default)]
 pub struct LookSpec {
     /// Which dye is shown.
@@ -19,7 +20,11 @@ pub struct LookSpec {
     pub darkest_at: Option<f64>,
     /// Pixels along one side of a cell.
     pub pixels_per_cell: u32,
-    /// How the yarns look.
+    /// Which side of the cloth is seen.
+    pub side: Side,
+    /// What the undyed cloth looks like.
+    pub texture: TextureLook,
+    /// How shaded yarns look.
     pub yarn: YarnLook,
 }
 
@@ -30,7 +35,62 @@ impl Default for LookSpec {
             colours: Colours::Indigo,
             darkest_at: None,
             pixels_per_cell: 1,
+            side: Side::Face,
+            texture: TextureLook::Shaded,
             yarn: YarnLook::default(),
+        }
+    }
+}
+
+/// A side of the cloth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Side {
+    /// The side that the weave is drawn for.
+    Face,
+    /// The other one: left and right exchanged, and the yarns that lie beneath on top.
+    Back,
+}
+
+/// What the undyed cloth looks like; the colour of the dye is multiplied with it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum TextureLook {
+    /// Yarns of twisted fibre in the light, as `yarn` says (paper D §4.3.1 a).
+    #[default]
+    Shaded,
+    /// Yarns whose colour is unevenly dense (paper Y).
+    Fractal(FractalLook),
+    /// A photograph of cloth beside the scenario file (paper D §4.3.1 b).
+    Photo {
+        /// The photograph, PNG or JPEG.
+        file: String,
+        /// What to do with one of another size than the cloth: one pixel is one cell.
+        #[serde(default)]
+        fit: Fit,
+    },
+}
+
+/// Fractal yarns (paper Y §2).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Fractal", deny_unknown_fields, default)]
+pub struct FractalLook {
+    /// H of the curves: near 1 smooth, near 0 rough.
+    pub roughness: f64,
+    /// N: where a curve from 0 to 1 lies above it, the unit yarn has colour.
+    pub threshold: f64,
+    /// Unit yarns in a yarn.
+    pub unit_yarns: u32,
+    /// How much paler a place without any colour is, 0 to 1.
+    pub contrast: f64,
+}
+
+impl Default for FractalLook {
+    fn default() -> Self {
+        FractalLook {
+            roughness: 0.45,
+            threshold: 0.35,
+            unit_yarns: 6,
+            contrast: 0.75,
         }
     }
 }
@@ -95,17 +155,23 @@ pub struct YarnLook {
     pub fibres: u32,
     /// How deep the grooves between the fibres are, 0 to 1.
     pub roughness: f64,
-    /// How differently thick and bright the yarns are, 0 to 1.
+    /// How differently thick and bright the yarns are, and how much they wander, 0 to 1.
     pub unevenness: f64,
+    /// How many loose fibres stand out from them, 0 to 1.
+    pub hairiness: f64,
+    /// How much their fibres shine, 0 (cotton) to 1 (silk).
+    pub lustre: f64,
 }
 
 impl Default for YarnLook {
     fn default() -> Self {
         YarnLook {
-            turn: 3.0,
-            fibres: 12,
+            turn: 5.0,
+            fibres: 44,
             roughness: 0.3,
-            unevenness: 0.35,
+            unevenness: 0.4,
+            hairiness: 0.35,
+            lustre: 0.0,
         }
     }
 }
@@ -134,6 +200,13 @@ impl LookSpec {
                 at.item(2).within(value, 0.0..=1.0)?;
             }
         }
+        if let TextureLook::Fractal(look) = &self.texture {
+            let at = at.field("texture").field("Fractal");
+            at.field("roughness").within(look.roughness, 0.0..=1.0)?;
+            at.field("threshold").within(look.threshold, 0.0..=1.0)?;
+            at.field("unit_yarns").within(look.unit_yarns, 1..=1000)?;
+            at.field("contrast").within(look.contrast, 0.0..=1.0)?;
+        }
         let at = at.field("yarn");
         let turn = self.yarn.turn;
         if !(0.25..=1000.0).contains(&turn.abs()) {
@@ -145,6 +218,9 @@ impl LookSpec {
         at.field("roughness")
             .within(self.yarn.roughness, 0.0..=1.0)?;
         at.field("unevenness")
-            .within(self.yarn.unevenness, 0.0..=1.0)
+            .within(self.yarn.unevenness, 0.0..=1.0)?;
+        at.field("hairiness")
+            .within(self.yarn.hairiness, 0.0..=1.0)?;
+        at.field("lustre").within(self.yarn.lustre, 0.0..=1.0)
     }
 }

@@ -21,9 +21,9 @@ pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
 pub use error::{ScenarioError, SourceError};
 pub use experiment::{Experiment, Origin};
 pub use fabric::{ClothSpec, Paths, YarnSpec};
-pub use images::Images;
+pub use images::{Images, Photo};
 pub use library::{Bundled, bundled, names as bundled_names};
-pub use look::{Colours, LARGEST_SCALE, LookSpec, Show, YarnLook};
+pub use look::{Colours, FractalLook, LARGEST_SCALE, LookSpec, Show, Side, TextureLook, YarnLook};
 pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, Solver, SupplySpec};
 pub use units::{Length, Time};
 

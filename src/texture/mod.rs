@@ -1,20 +1,32 @@
-//! What is seen: dye as colour on shaded yarns (paper D §4.3; model section 6).
+//! What is seen: dye as colour on the undyed cloth (paper D §4.3; paper Y; model section 6).
+//!
+//! The undyed cloth is drawn once, at the scale of the picture: which layer each pixel shows, and in
+//! what shade. For every frame the amount of dye in that layer gives the colour, which is
+//! multiplied with the shade.
 
 mod colour;
+mod fractal;
+mod geometry;
+mod hair;
+mod noise;
+mod relief;
 mod shade;
+mod taps;
 mod yarn;
 
 use bevy::prelude::*;
 use rayon::prelude::*;
 
 pub use colour::{Hsv, Ramp, Rgb, between, to_rgb};
+pub use relief::Relief;
 use shade::Shade;
 pub use shade::seen;
+use taps::Tap;
 
 use crate::adsorption::BoundDye;
-use crate::cloth::{Cloth, Layer};
+use crate::cloth::{Cloth, Layer, Yarns};
 use crate::diffusion::FreeDye;
-use crate::scenario::{Scenario, Show};
+use crate::scenario::{Images, Photo, Scenario, Show, Side, TextureLook};
 use crate::schedule::{DyeFrame, FrameSet, Prepare, PrepareSet, TheExperiment};
 
 /// Pictures of the cloth.
@@ -36,10 +48,15 @@ pub struct Scale(pub u32);
 pub struct Texture {
     /// Pixels along one side of a cell.
     pub scale: usize,
-    /// For every position `(y, x)`, the cell that gives it its colour.
-    seen: Vec<Seen>,
-    /// The shade of every pixel, row by row.
+    /// Layer and shade of every pixel, row by row.
     shade: Vec<Shade>,
+    /// The photograph that the colours are multiplied with, if there is one: RGB of every pixel.
+    photo: Option<Vec<u8>>,
+    /// Where every column finds its dye in the weft and in the warp layer, and every row.
+    columns: [Vec<Tap>; 2],
+    rows: [Vec<Tap>; 2],
+    /// The colours of undyed weft and warp for every row and column, where they are not white.
+    tints: Option<[Vec<Rgb>; 2]>,
     /// Colours by amount of dye.
     pub ramp: Ramp,
     /// Which dye is shown.
@@ -57,86 +74,191 @@ pub struct Picture {
     pub rgb: Vec<u8>,
 }
 
-/// Which cell of its row gives a position its colour, in two bytes: the layer in the highest bit,
-/// and how many columns to the left.
-#[derive(Debug, Clone, Copy)]
-struct Seen(u16);
-
-impl Seen {
-    const WARP: u16 = 1 << 15;
-
-    fn new((layer, column): (Layer, usize), x: usize) -> Self {
-        // Nobody could tell by which yarn a gap of 32,768 cells is shaded.
-        let left = (x - column).min(usize::from(Self::WARP) - 1) as u16;
-        match layer {
-            Layer::Weft => Seen(left),
-            Layer::Warp => Seen(left | Self::WARP),
-        }
-    }
-
-    fn cell(self, x: usize) -> (Layer, usize) {
-        let layer = Layer::BOTH[usize::from(self.0 >> 15)];
-        (layer, x - usize::from(self.0 & !Self::WARP))
-    }
-}
-
 impl Texture {
-    /// Prepares pictures of a cloth at `scale` pixels a cell.
-    pub fn new(cloth: &Cloth, scenario: &Scenario, scale: usize) -> Self {
-        let nx = cloth.grid.nx;
-        let mut seen = vec![Seen(0); cloth.grid.layer_len()];
-        seen.par_chunks_mut(nx).enumerate().for_each(|(y, row)| {
-            for (x, cell) in row.iter_mut().enumerate() {
-                *cell = Seen::new(shade::coloured_by(cloth, y, x), x);
+    /// Prepares pictures of a cloth at `scale` pixels a cell, from one side.
+    pub fn new(
+        cloth: &Cloth,
+        scenario: &Scenario,
+        images: &Images,
+        scale: usize,
+        side: Side,
+    ) -> Self {
+        let turned;
+        let face = match side {
+            Side::Face => cloth,
+            Side::Back => {
+                turned = cloth.turned_over();
+                &turned
             }
-        });
+        };
+        let look = &scenario.look;
+        let (shade, photo) = match &look.texture {
+            TextureLook::Shaded => (shade::draw(face, look.yarn, scenario.seed, scale), None),
+            TextureLook::Fractal(fractal) => {
+                (fractal::draw(face, fractal, scenario.seed, scale), None)
+            }
+            TextureLook::Photo { file, fit } => {
+                let photo = images
+                    .photo(file)
+                    .map(|photo| photo.fitted(*fit, face.grid));
+                let photo = photo.map(|photo| enlarged(&photo, scale, side));
+                (shade::flat(face, scale), photo)
+            }
+        };
+        let turn = |taps: Vec<Tap>| match side {
+            Side::Face => taps,
+            Side::Back => taps::mirrored(&taps, cloth.grid.nx),
+        };
         Texture {
             scale,
-            seen,
-            shade: shade::draw(cloth, scenario.look.yarn, scenario.seed, scale),
-            ramp: Ramp::new(&scenario.look.colours, darkest_at(scenario)),
-            show: scenario.look.show,
+            shade,
+            photo,
+            columns: [
+                turn(taps::along(cloth.grid.nx, scale)),
+                turn(taps::across(&face.warp, scale)),
+            ],
+            rows: [
+                taps::across(&cloth.weft, scale),
+                taps::along(cloth.grid.ny, scale),
+            ],
+            tints: tints(face, scale),
+            ramp: Ramp::new(&look.colours, darkest_at(scenario)),
+            show: look.show,
         }
     }
 
     /// Draws dye on the cloth.
     pub fn draw(&self, cloth: &Cloth, free: &FreeDye, bound: &BoundDye, picture: &mut Picture) {
         let (nx, ny, scale) = (cloth.grid.nx, cloth.grid.ny, self.scale);
-        picture.width = nx * scale;
+        let width = nx * scale;
+        picture.width = width;
         picture.height = ny * scale;
-        picture.rgb.resize(picture.width * picture.height * 3, 0);
-        let amount = |(layer, x): (Layer, usize), y: usize| {
-            let i = cloth.grid.index(layer, y, x);
-            match self.show {
-                Show::FreeAndBound => {
-                    free.concentration[i] * cloth.capacity_free(layer, y, x) + bound.at(i)
-                }
-                Show::BoundOnly => bound.at(i),
-            }
+        picture.rgb.resize(width * picture.height * 3, 0);
+        let amounts = self.amounts(cloth, free, bound);
+        let (weft, warp) = amounts.split_at(cloth.grid.layer_len());
+        let between = |layer: &[f32], tap: Tap, line: &mut Vec<f32>| {
+            let row = |y: u32| &layer[y as usize * nx..][..nx];
+            let both = row(tap.near).iter().zip(row(tap.far));
+            line.clear();
+            line.extend(both.map(|(a, b)| a + tap.share * (b - a)));
         };
-        let width = picture.width;
+        // A few rows a task, so that its lines are made once.
+        let rows_a_task = 4 * scale;
         picture
             .rgb
-            .par_chunks_mut(width * scale * 3)
+            .par_chunks_mut(width * rows_a_task * 3)
             .enumerate()
-            .for_each(|(y, rows)| {
-                let cells = &self.seen[y * nx..][..nx];
-                let colours: Vec<Rgb> = cells
-                    .iter()
-                    .enumerate()
-                    .map(|(x, seen)| self.ramp.colour(amount(seen.cell(x), y)).map(|c| 255.0 * c))
-                    .collect();
+            .for_each(|(task, rows)| {
+                let (mut weft_line, mut warp_line) = (Vec::new(), Vec::new());
                 for (j, row) in rows.chunks_exact_mut(width * 3).enumerate() {
-                    let shades = &self.shade[(y * scale + j) * width..][..width];
-                    for (px, pixel) in row.chunks_exact_mut(3).enumerate() {
-                        for (channel, colour) in pixel.iter_mut().zip(colours[px / scale]) {
-                            // Casting rounds down and saturates.
-                            *channel = (colour * shades[px].value() + 0.5) as u8;
-                        }
-                    }
+                    let py = task * rows_a_task + j;
+                    between(weft, self.rows[0][py], &mut weft_line);
+                    between(warp, self.rows[1][py], &mut warp_line);
+                    self.paint(py, [&weft_line, &warp_line], row);
                 }
             });
     }
+
+    /// The amount of dye shown in every cell.
+    fn amounts(&self, cloth: &Cloth, free: &FreeDye, bound: &BoundDye) -> Vec<f32> {
+        let (nx, ny) = (cloth.grid.nx, cloth.grid.ny);
+        let mut amounts = vec![0.0; cloth.grid.len()];
+        amounts
+            .par_chunks_mut(nx)
+            .enumerate()
+            .for_each(|(row, line)| {
+                let (layer, y) = (Layer::BOTH[row / ny], row % ny);
+                if self.show == Show::FreeAndBound {
+                    let c = &free.concentration[row * nx..][..nx];
+                    for (x, (amount, c)) in line.iter_mut().zip(c).enumerate() {
+                        *amount = c * cloth.capacity_free(layer, y, x);
+                    }
+                }
+                if let Some(bound) = bound.amount.get(row * nx..(row + 1) * nx) {
+                    for (amount, bound) in line.iter_mut().zip(bound) {
+                        *amount += bound;
+                    }
+                }
+            });
+        amounts
+    }
+
+    /// Paints row `py`; `lines` are the amounts in weft and warp at its height.
+    fn paint(&self, py: usize, lines: [&[f32]; 2], row: &mut [u8]) {
+        let width = row.len() / 3;
+        let shades = &self.shade[py * width..][..width];
+        let (weft, warp) = (&self.columns[0][..width], &self.columns[1][..width]);
+        let pixels = row.as_chunks_mut::<3>().0;
+        if self.tints.is_none() && self.photo.is_none() {
+            for (px, (pixel, shade)) in pixels.iter_mut().zip(shades).enumerate() {
+                let amount = match shade.layer() {
+                    Layer::Weft => weft[px].of(lines[0]),
+                    Layer::Warp => warp[px].of(lines[1]),
+                };
+                *pixel = display(self.ramp.colour(amount), shade.value());
+            }
+            return;
+        }
+        for (px, (pixel, shade)) in pixels.iter_mut().zip(shades).enumerate() {
+            let layer = shade.layer();
+            let amount = match layer {
+                Layer::Weft => weft[px].of(lines[0]),
+                Layer::Warp => warp[px].of(lines[1]),
+            };
+            let mut colour = self.ramp.colour(amount);
+            if let Some([weft, warp]) = &self.tints {
+                let tint = match layer {
+                    Layer::Weft => weft[py],
+                    Layer::Warp => warp[px],
+                };
+                colour = times(colour, tint);
+            }
+            if let Some(photo) = &self.photo {
+                let at = 3 * (py * width + px);
+                colour = times(colour, [0, 1, 2].map(|i| f32::from(photo[at + i]) / 255.0));
+            }
+            *pixel = display(colour, shade.value());
+        }
+    }
+}
+
+fn times(a: Rgb, b: Rgb) -> Rgb {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+}
+
+/// A shaded colour in 8 bits.
+#[inline]
+fn display(colour: Rgb, shade: f32) -> [u8; 3] {
+    // Casting rounds down and saturates.
+    colour.map(|channel| (channel * (255.0 * shade) + 0.5) as u8)
+}
+
+/// A photograph of one pixel a cell at `scale` pixels a cell, as it is seen from one side.
+fn enlarged(photo: &Photo, scale: usize, side: Side) -> Vec<u8> {
+    let image = &photo.rgb;
+    let (width, height) = (image.width() * scale as u32, image.height() * scale as u32);
+    let filter = image::imageops::FilterType::CatmullRom;
+    let mut image = match scale {
+        1 => image.clone(),
+        _ => image::imageops::resize(image, width, height, filter),
+    };
+    if side == Side::Back {
+        image::imageops::flip_horizontal_in_place(&mut image);
+    }
+    image.into_raw()
+}
+
+/// The colours of undyed yarns for every row (weft) and column (warp) of pixels.
+fn tints(cloth: &Cloth, scale: usize) -> Option<[Vec<Rgb>; 2]> {
+    let is_white = |yarns: &Yarns| yarns.yarns.iter().all(|yarn| yarn.colour == [1.0; 3]);
+    if is_white(&cloth.weft) && is_white(&cloth.warp) {
+        return None;
+    }
+    let lines = |yarns: &Yarns| {
+        let colour = |p: usize| yarns.yarns[yarns.number(p / scale)].colour;
+        (0..yarns.cells() * scale).map(colour).collect()
+    };
+    Some([lines(&cloth.weft), lines(&cloth.warp)])
 }
 
 /// The amount of dye that has the darkest colour: as much as the cloth holds of what is shown.
@@ -161,8 +283,10 @@ fn prepare(
     scale: Option<Res<Scale>>,
 ) {
     let scenario = &experiment.scenario;
-    let scale = scale.map_or(scenario.look.pixels_per_cell, |scale| scale.0);
-    commands.insert_resource(Texture::new(&cloth, scenario, scale as usize));
+    let scale = scale.map_or(scenario.look.pixels_per_cell, |scale| scale.0) as usize;
+    let side = scenario.look.side;
+    let texture = Texture::new(&cloth, scenario, &experiment.images, scale, side);
+    commands.insert_resource(texture);
     commands.insert_resource(Picture::default());
 }
 
