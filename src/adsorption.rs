@@ -9,6 +9,9 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::diffusion::{CELLS_A_SUM, Conductances, FreeDye, add};
+use crate::kasuri;
+use crate::ledger::Ledger;
+use crate::pattern::Canvas;
 use crate::scenario::{AdsorptionSpec, Isotherm, Scenario, Solver};
 use crate::schedule::{DyeSet, DyeStep, Prepare, PrepareSet, ProcessClock, TheExperiment};
 
@@ -31,7 +34,7 @@ impl Plugin for AdsorptionPlugin {
 }
 
 /// Bound dye A in every cell, as a share of its volume, `(layer, y, x)`. Empty in a cloth that
-/// binds none.
+/// has none and binds none.
 #[derive(Resource, Debug, Clone, PartialEq, Default)]
 pub struct BoundDye {
     /// The amounts.
@@ -253,21 +256,31 @@ impl Pores<'_> {
     }
 }
 
-fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
-    let cells = match experiment.scenario.adsorption {
-        Some(_) => cloth.grid.len(),
-        None => 0,
-    };
-    if cells > 0 && experiment.scenario.solver() == Solver::Explicit {
+fn prepare(
+    mut commands: Commands,
+    cloth: Res<Cloth>,
+    experiment: Res<TheExperiment>,
+    mut ledger: ResMut<Ledger>,
+) {
+    let scenario = &experiment.scenario;
+    let (binds, explicit) = (
+        scenario.adsorption.is_some(),
+        scenario.solver() == Solver::Explicit,
+    );
+    if binds && explicit {
         commands.insert_resource(Capacities::of(&cloth));
     }
-    commands.insert_resource(BoundDye {
-        amount: vec![0.0; cells],
-        carry: match experiment.scenario.solver() {
-            Solver::Explicit => vec![0.0; cells],
-            Solver::Accelerated => Vec::new(),
-        },
-    });
+    // What yarns bring that were dyed before they were woven was supplied to them then.
+    let brought = kasuri::bound(
+        &cloth,
+        &scenario.cloth.kasuri.layers(),
+        &Canvas::of(&experiment),
+    );
+    let amount = brought.unwrap_or_else(|| vec![0.0; if binds { cloth.grid.len() } else { 0 }]);
+    let carry = vec![0.0; if binds && explicit { amount.len() } else { 0 }];
+    let bound = BoundDye { amount, carry };
+    ledger.book(bound.total());
+    commands.insert_resource(bound);
 }
 
 fn adsorption(

@@ -15,7 +15,7 @@ pub struct LedgerPlugin;
 
 impl Plugin for LedgerPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Prepare, open.in_set(PrepareSet::Stages))
+        app.add_systems(Prepare, open.in_set(PrepareSet::Cloth))
             .add_systems(DyeFrame, balance.in_set(FrameSet::Measure));
     }
 }

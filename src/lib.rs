@@ -8,6 +8,7 @@
 //! | [`pattern`] | where resist and dye are | — |
 //! | [`cloth`] | yarns are woven into two layers of cells | [`Cloth`](cloth::Cloth) |
 //! | [`schedule`] | the order of the stages, the clock of the process | [`ProcessClock`](schedule::ProcessClock) |
+//! | [`kasuri`] | yarns that were dyed before they were woven | — |
 //! | [`supply`] | dye enters | [`Supplies`](supply::Supplies) |
 //! | [`diffusion`] | dye moves | [`FreeDye`](diffusion::FreeDye), [`Conductances`](diffusion::Conductances) |
 //! | [`adsorption`] | dye binds | [`BoundDye`](adsorption::BoundDye) |
@@ -39,6 +40,7 @@ pub mod adsorption;
 pub mod chance;
 pub mod cloth;
 pub mod diffusion;
+pub mod kasuri;
 pub mod ledger;
 pub mod memory;
 pub mod pattern;

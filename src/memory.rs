@@ -3,7 +3,6 @@
 use sysinfo::System;
 use thiserror::Error;
 
-use crate::pattern::Pattern;
 use crate::scenario::Scenario;
 
 /// Bytes of the program itself.
@@ -80,22 +79,21 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
     let (nx, ny) = scenario.cloth.cells();
     let cells = 2 * nx as u128 * ny as u128;
     let pixels = nx as u128 * ny as u128 * u128::from(scale) * u128::from(scale);
-    let patterns = scenario.supply.iter().map(|supply| supply.shape());
+    let patterns = scenario.patterns();
     let rasters = patterns
-        .chain([&scenario.resist])
-        .map(|pattern| pattern.rasters_at_once())
+        .iter()
+        .map(|(pattern, _)| pattern.rasters_at_once())
         .max()
         .unwrap_or(0);
     // A held cell is listed with its place and dose: in its hold, for its end, among all that are
     // held, and twice over while those are sorted out.
     let held = 5 * 8 * scenario.supply.len() as u128;
     // Images are kept as rasters beside the ones that are drawn.
-    let every = scenario.patterns();
-    let is_image = |(pattern, _): &&(&Pattern, _)| matches!(pattern, Pattern::Image { .. });
-    let images = every.iter().filter(is_image).count();
+    let images = scenario.pictures().len();
     let per_layer_cell = 4 * (rasters + images) as u128;
     let recorded = if fields { BYTES_PER_RECORDED_CELL } else { 0 };
-    let binding = scenario.adsorption.map_or(0, |_| BYTES_PER_BINDING_CELL);
+    let bound = scenario.adsorption.is_some() || scenario.cloth.kasuri.is_there();
+    let binding = if bound { BYTES_PER_BINDING_CELL } else { 0 };
     let places = scenario.record.sheet.len().max(8) as u128;
     BYTES_AT_LEAST
         + cells * (BYTES_PER_CELL + held + recorded + binding)

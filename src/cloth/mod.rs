@@ -21,7 +21,7 @@ pub use yarns::{Span, Thread, Yarn, Yarns};
 
 use crate::chance::{Chance, Purpose};
 use crate::pattern::{Canvas, Raster};
-use crate::scenario::ClothSpec;
+use crate::scenario::{ClothSpec, Images};
 use crate::schedule::{Prepare, PrepareSet, TheExperiment};
 use yarns::Draws;
 
@@ -38,7 +38,8 @@ fn prepare(mut commands: Commands, experiment: Res<TheExperiment>) {
     let scenario = &experiment.scenario;
     let resist = Canvas::of(&experiment).draw(&scenario.resist);
     let chance = Chance(scenario.seed);
-    commands.insert_resource(Cloth::weave(&scenario.cloth, resist, chance));
+    let cloth = Cloth::weave(&scenario.cloth, &experiment.images, resist, chance);
+    commands.insert_resource(cloth);
 }
 
 /// A woven cloth, ready to be dyed.
@@ -92,8 +93,8 @@ impl Deref for Cloth {
 const SHUT: f64 = 1e-9;
 
 impl Cloth {
-    /// Weaves the cloth of a scenario and ties `resist` around it.
-    pub fn weave(spec: &ClothSpec, resist: Raster, chance: Chance) -> Self {
+    /// Weaves the cloth of a scenario, whose files are in `images`, and ties `resist` around it.
+    pub fn weave(spec: &ClothSpec, images: &Images, resist: Raster, chance: Chance) -> Self {
         let (nx, ny) = spec.cells();
         let warp_draws = Draws {
             porosity: Purpose::WarpPorosity,
@@ -108,12 +109,19 @@ impl Cloth {
             width: Purpose::WeftWidth,
         };
         let nominal = |porosity: f64| spec.gap_porosity.unwrap_or(porosity);
+        let warp = Yarns::spun(&spec.warp, spec.cell_mm, nx, chance, warp_draws, &[]);
+        let weft = Yarns::spun(spec.weft(), spec.cell_mm, ny, chance, weft_draws, &[]);
+        let mask = match &spec.weave {
+            Weave::Mask { file } => images.mask(file).cloned(),
+            _ => None,
+        };
+        let seen = mask.as_ref().map(|mask| mask.weave(&warp, &weft));
         Cloth::assemble(Parts {
             cell_mm: spec.cell_mm,
-            warp: Yarns::spun(&spec.warp, spec.cell_mm, nx, chance, warp_draws, &[]),
-            weft: Yarns::spun(spec.weft(), spec.cell_mm, ny, chance, weft_draws, &[]),
-            weave: spec.weave.matrix(),
-            mask: None,
+            weave: seen.unwrap_or_else(|| spec.weave.matrix()),
+            warp,
+            weft,
+            mask,
             gap_porosity: [nominal(spec.weft().porosity), nominal(spec.warp.porosity)],
             resist,
         })

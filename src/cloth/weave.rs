@@ -36,6 +36,12 @@ pub enum Weave {
     /// Drawn by hand: one string a pick from the top, `X` where the warp is on top and `.` where
     /// the weft is.
     Matrix(Vec<String>),
+    /// Read off a photograph, cell by cell (paper D §4.3.1 b, Fig 7).
+    Mask {
+        /// A picture as large as the cloth, beside the scenario file: blue where the warp is on top, red
+        /// where the weft is. `dyelapse segment` makes one.
+        file: String,
+    },
 }
 
 /// The yarn that covers the face of a satin.
@@ -58,7 +64,7 @@ impl Weave {
     /// A [`Problem`] that names the field and what is allowed there.
     pub fn check(&self, at: &Checker) -> Result<(), Problem> {
         match self {
-            Weave::Plain => Ok(()),
+            Weave::Plain | Weave::Mask { .. } => Ok(()),
             Weave::Twill { over, under } => {
                 at.field("over").within(*over, 1..=LARGEST_REPEAT / 2)?;
                 at.field("under").within(*under, 1..=LARGEST_REPEAT / 2)
@@ -90,10 +96,12 @@ impl Weave {
         }
     }
 
-    /// The weave as one repeat, ready to be looked up.
+    /// The weave as one repeat, ready to be looked up. What only a file says counts as plain.
     pub fn matrix(&self) -> WeaveMatrix {
         match self {
-            Weave::Plain => WeaveMatrix::from_rule(2, 2, |e, p| (e + p) % 2 == 0),
+            Weave::Plain | Weave::Mask { .. } => {
+                WeaveMatrix::from_rule(2, 2, |e, p| (e + p) % 2 == 0)
+            }
             Weave::Twill { over, under } => {
                 let n = over + under;
                 WeaveMatrix::from_rule(n, n, |e, p| (e + n - p) % n < *over)

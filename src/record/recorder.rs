@@ -1,7 +1,7 @@
 //! The recorder: keeps the frames that it is told to expect.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::io::{self, Write};
 
 use bevy::prelude::*;
 
@@ -17,7 +17,7 @@ use crate::cloth::Cloth;
 use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
 use crate::scenario::units::rounded;
-use crate::scenario::{Experiment, Origin};
+use crate::scenario::{Beside, Experiment, Origin};
 use crate::schedule::{DyeFrame, FrameSet, ProcessClock, TheExperiment};
 use crate::supply::Supplies;
 use crate::texture::Picture;
@@ -120,11 +120,11 @@ impl Recorder {
 /// or below it. Others stay where they are.
 pub(super) fn pictures_beside(experiment: &Experiment) -> Vec<String> {
     match experiment.origin {
-        Origin::File(_) => {
+        Origin::File(_) | Origin::Bundled => {
             let names: BTreeSet<String> = experiment.images.files().filter_map(below).collect();
             names.into_iter().collect()
         }
-        Origin::Bundled | Origin::Memory => Vec::new(),
+        Origin::Memory => Vec::new(),
     }
 }
 
@@ -133,14 +133,11 @@ fn copy_pictures(
     pictures: &[String],
     folder: &Folder,
 ) -> Result<(), RecordError> {
-    let Origin::File(scenario) = &experiment.origin else {
-        return Ok(());
-    };
-    let beside = scenario.parent().unwrap_or(Path::new(""));
+    let beside = Beside::of(&experiment.origin);
     for name in pictures {
         folder.write(name, |to| {
-            let mut from = std::fs::File::open(beside.join(name))?;
-            std::io::copy(&mut from, to).map(|_| ())
+            let bytes = beside.read(name).map_err(io::Error::other)?;
+            to.write_all(&bytes)
         })?;
     }
     Ok(())

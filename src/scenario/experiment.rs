@@ -7,7 +7,7 @@ use ron::extensions::Extensions;
 use sha2::{Digest, Sha256};
 
 use super::error::nearest;
-use super::{Images, Scenario, ScenarioError, SourceError, bundled, bundled_names};
+use super::{Beside, Images, Scenario, ScenarioError, SourceError, bundled, bundled_names};
 use crate::memory::{self, Use};
 
 /// The longest scenario file that is read, bytes.
@@ -71,8 +71,7 @@ impl Experiment {
     pub fn from_scenario(name: &str, scenario: Scenario) -> Result<Self, ScenarioError> {
         scenario.check()?;
         memory::check(&scenario, Use::of(&scenario))?;
-        let here = Path::new("");
-        let images = Images::load(&scenario.patterns(), here, scenario.cloth.cells())?;
+        let images = Images::load(&scenario, &Beside::of(&Origin::Memory))?;
         let text = ron::ser::to_string_pretty(&scenario, ron::ser::PrettyConfig::default())
             .unwrap_or_default();
         Ok(Experiment {
@@ -103,12 +102,7 @@ impl Experiment {
         scenario.check().map_err(problem)?;
         // Before anything is as large as the cloth, even one of its pictures.
         memory::check(&scenario, Use::of(&scenario))?;
-        let folder = match &origin {
-            Origin::File(path) => path.parent().unwrap_or(Path::new("")),
-            _ => Path::new(""),
-        };
-        let images =
-            Images::load(&scenario.patterns(), folder, scenario.cloth.cells()).map_err(problem)?;
+        let images = Images::load(&scenario, &Beside::of(&origin)).map_err(problem)?;
         let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str());
         Ok(Experiment {
             name: stem.unwrap_or("scenario").into(),

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::check::{Checker, Problem};
 use super::units::Length;
 use crate::cloth::Weave;
+use crate::pattern::Pattern;
 
 /// The most cells a cloth may have along one side.
 pub const LONGEST_SIDE: usize = 1 << 20;
@@ -36,6 +37,48 @@ pub struct ClothSpec {
     /// How straight the paths are that dye takes from cell to cell.
     #[serde(default)]
     pub paths: Paths,
+    /// Yarns that were dyed in sections before they were woven.
+    #[serde(default)]
+    pub kasuri: Kasuri,
+}
+
+/// Which yarns were dyed before weaving; both for double kasuri.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Kasuri {
+    /// The warp.
+    pub warp: Option<KasuriSpec>,
+    /// The weft.
+    pub weft: Option<KasuriSpec>,
+}
+
+/// How the yarns of one direction were dyed before weaving.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Sections", deny_unknown_fields)]
+pub struct KasuriSpec {
+    /// Where the woven cloth is to show dyed yarn.
+    pub pattern: Pattern,
+    /// How much of what fibre can bind is bound there, 0 to 1.
+    #[serde(default = "default_amount")]
+    pub amount: f64,
+    /// The farthest that a yarn lies from where it was planned.
+    #[serde(default = "default_shift")]
+    pub shift: Length,
+    /// How far dye bled under the binding: standard deviation along the yarn.
+    #[serde(default = "default_bleed")]
+    pub bleed: Length,
+}
+
+fn default_amount() -> f64 {
+    0.9
+}
+
+fn default_shift() -> Length {
+    Length::Cells(4.0)
+}
+
+fn default_bleed() -> Length {
+    Length::Cells(2.0)
 }
 
 /// The yarns of one direction.
@@ -143,7 +186,56 @@ impl ClothSpec {
             at.field("gap_porosity")
                 .within(porosity, LEAST_POROSITY..=1.0)?;
         }
-        self.paths.check(&at.field("paths"))
+        self.paths.check(&at.field("paths"))?;
+        if matches!(self.weave, Weave::Mask { .. }) {
+            for (name, yarn) in [("warp", &self.warp), ("weft", self.weft())] {
+                if yarn.gap.whole_cells(self.cell_mm) > 0 {
+                    return Err(at.field(name).field("gap").problem(
+                        "a cloth from a photograph has no gaps (paper D §4.3.1); \
+                         write `gap: Cells(0)`"
+                            .into(),
+                    ));
+                }
+            }
+        }
+        self.kasuri.check(&at.field("kasuri"), self.cell_mm)
+    }
+}
+
+impl Kasuri {
+    /// The weft's and the warp's, in the order of the layers.
+    pub fn layers(&self) -> [Option<KasuriSpec>; 2] {
+        [self.weft.clone(), self.warp.clone()]
+    }
+
+    /// Whether any yarn was dyed.
+    pub fn is_there(&self) -> bool {
+        self.warp.is_some() || self.weft.is_some()
+    }
+
+    /// The patterns, each with its place in the scenario.
+    pub(super) fn patterns(&self, at: &Checker) -> Vec<(&Pattern, Checker)> {
+        let both = [("warp", &self.warp), ("weft", &self.weft)];
+        let each = both.into_iter().filter_map(|(name, spec)| {
+            let pattern = &spec.as_ref()?.pattern;
+            Some((pattern, at.field(name).field("pattern")))
+        });
+        each.collect()
+    }
+
+    fn check(&self, at: &Checker, cell_mm: f64) -> Result<(), Problem> {
+        for (name, spec) in [("warp", &self.warp), ("weft", &self.weft)] {
+            let (Some(spec), at) = (spec, at.field(name)) else {
+                continue;
+            };
+            spec.pattern.check(&at.field("pattern"), cell_mm)?;
+            at.field("amount").within(spec.amount, 0.0..=1.0)?;
+            let longest = LONGEST_SIDE as f64;
+            spec.shift
+                .check(&at.field("shift"), cell_mm, 0.0, longest)?;
+            spec.bleed.check(&at.field("bleed"), cell_mm, 0.0, 1000.0)?;
+        }
+        Ok(())
     }
 }
 

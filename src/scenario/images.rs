@@ -1,20 +1,42 @@
 //! The pictures that a scenario's patterns name, loaded and checked before anything runs.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::io::Cursor;
 
 use image::{ImageReader, Limits, RgbImage, imageops};
 
-use super::check::{Checker, Problem};
-use crate::cloth::Grid;
+use super::check::Problem;
+use super::{Beside, Scenario};
+use crate::cloth::{Grid, Mask};
 use crate::memory;
-use crate::pattern::{Fit, Pattern, Raster};
+use crate::pattern::{Fit, Raster};
 
 /// Loaded pictures by the name that the scenario gives them.
 #[derive(Debug, Clone, Default)]
 pub struct Images {
     rasters: BTreeMap<String, Raster>,
     photos: BTreeMap<String, Photo>,
+    masks: BTreeMap<String, Mask>,
+}
+
+/// What is wanted of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// Its brightness, for a pattern.
+    Brightness(Fit),
+    /// Its colours, for cloth to look like it.
+    Photo(Fit),
+    /// Where it is blue and where it is red, for a weave.
+    Mask,
+}
+
+impl Wanted {
+    fn fit(self) -> Fit {
+        match self {
+            Wanted::Brightness(fit) | Wanted::Photo(fit) => fit,
+            Wanted::Mask => Fit::Exact,
+        }
+    }
 }
 
 /// A photograph of cloth.
@@ -51,6 +73,11 @@ impl Images {
         self.photos.get(file)
     }
 
+    /// The mask of this name, if it was loaded.
+    pub fn mask(&self, file: &str) -> Option<&Mask> {
+        self.masks.get(file)
+    }
+
     /// Bytes that loading the pictures takes at most: one after the other, and then all of them.
     pub fn bytes(&self) -> u128 {
         let pixels = || {
@@ -64,60 +91,76 @@ impl Images {
 
     /// The names of all pictures.
     pub fn files(&self) -> impl Iterator<Item = &str> {
-        self.rasters.keys().map(String::as_str)
+        let all = self.rasters.keys().chain(self.photos.keys());
+        all.chain(self.masks.keys()).map(String::as_str)
     }
 
-    /// Loads every picture that `patterns` name, from files beside the scenario in `folder`.
+    /// Loads every picture that a scenario names.
     ///
     /// # Errors
-    /// A [`Problem`] at the pattern, naming the file, if it is missing, corrupt or of another size
-    /// than the cloth.
-    pub(super) fn load(
-        patterns: &[(&Pattern, Checker)],
-        folder: &Path,
-        cloth: (usize, usize),
-    ) -> Result<Self, Problem> {
+    /// A [`Problem`] at the field, naming the file, if it is missing, corrupt or of another size than
+    /// the cloth.
+    pub(super) fn load(scenario: &Scenario, beside: &Beside) -> Result<Self, Problem> {
         let mut images = Images::default();
-        for (pattern, at) in patterns {
-            let Pattern::Image { file, fit } = pattern else {
-                continue;
-            };
-            let path = folder.join(file);
-            let named = |why: String| {
-                at.field("file")
-                    .problem(format!("the picture {}: {why}", path.display()))
-            };
-            let (width, height) = dimensions(&path).map_err(named)?;
-            let needed = BYTES_PER_PIXEL * width as u64 * height as u64;
-            if needed > memory::free() {
-                return Err(named(format!(
-                    "its {width}×{height} pixels need {} MB of memory, more than is free",
-                    needed / 1_000_000
-                )));
-            }
-            let (nx, ny) = cloth;
-            if *fit == Fit::Exact && (width, height) != cloth {
-                return Err(named(format!(
-                    "it has {width}×{height} pixels but the cloth has {nx}×{ny} cells; \
-                     `fit: Stretch` fits it to the cloth"
-                )));
-            }
-            if !images.rasters.contains_key(file) {
-                images
-                    .rasters
-                    .insert(file.clone(), decode(&path).map_err(named)?);
+        for (file, wanted, at) in scenario.pictures() {
+            let path = beside.path(file);
+            let named = |why: String| at.problem(format!("the picture {}: {why}", path.display()));
+            let bytes = beside.read(file).map_err(named)?;
+            let size = dimensions(&bytes).map_err(named)?;
+            check_size(size, wanted, scenario.cloth.cells()).map_err(named)?;
+            let name = file.to_owned();
+            match wanted {
+                Wanted::Brightness(_) if !images.rasters.contains_key(file) => {
+                    let raster = decode(&bytes).map_err(named)?;
+                    images.rasters.insert(name, raster);
+                }
+                Wanted::Photo(_) if !images.photos.contains_key(file) => {
+                    let image = reader(&bytes).and_then(|r| r.decode().map_err(not_a_picture));
+                    let rgb = image.map_err(named)?.into_rgb8();
+                    images.photos.insert(name, Photo { rgb });
+                }
+                Wanted::Mask if !images.masks.contains_key(file) => {
+                    let mask = mask(&bytes).map_err(named)?;
+                    images.masks.insert(name, mask);
+                }
+                _ => {}
             }
         }
         Ok(images)
     }
 }
 
-fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>, String> {
-    if path.is_dir() {
-        return Err("it is a folder".into());
+/// Demands that a picture fits in memory and, where it is not to be fitted, to the cloth.
+fn check_size(
+    (width, height): (usize, usize),
+    wanted: Wanted,
+    cloth: (usize, usize),
+) -> Result<(), String> {
+    let needed = BYTES_PER_PIXEL * width as u64 * height as u64;
+    if needed > memory::free() {
+        return Err(format!(
+            "its {width}×{height} pixels need {} MB of memory, more than is free",
+            needed / 1_000_000
+        ));
     }
-    let mut reader = ImageReader::open(path)
-        .and_then(ImageReader::with_guessed_format)
+    let (nx, ny) = cloth;
+    if wanted.fit() == Fit::Stretch || (width, height) == cloth {
+        return Ok(());
+    }
+    let help = match wanted {
+        Wanted::Mask => {
+            format!("; `size: (Cells({width}), Cells({height}))` makes a cloth of its size")
+        }
+        _ => "; `fit: Stretch` fits it to the cloth".into(),
+    };
+    Err(format!(
+        "it has {width}×{height} pixels but the cloth has {nx}×{ny} cells{help}"
+    ))
+}
+
+fn reader(bytes: &[u8]) -> Result<ImageReader<Cursor<&[u8]>>, String> {
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
         .map_err(|why| format!("it cannot be read: {why}"))?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(memory::free());
@@ -125,14 +168,14 @@ fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>,
     Ok(reader)
 }
 
-fn dimensions(path: &Path) -> Result<(usize, usize), String> {
-    let (width, height) = reader(path)?.into_dimensions().map_err(not_a_picture)?;
+fn dimensions(bytes: &[u8]) -> Result<(usize, usize), String> {
+    let (width, height) = reader(bytes)?.into_dimensions().map_err(not_a_picture)?;
     Ok((width as usize, height as usize))
 }
 
 /// Brightness from 0 to 1; what is transparent counts as black, so that only what is drawn counts.
-fn decode(path: &Path) -> Result<Raster, String> {
-    let image = reader(path)?.decode().map_err(not_a_picture)?;
+fn decode(bytes: &[u8]) -> Result<Raster, String> {
+    let image = reader(bytes)?.decode().map_err(not_a_picture)?;
     let image = image.to_luma_alpha32f();
     Ok(Raster {
         nx: image.width() as usize,
@@ -151,4 +194,11 @@ fn not_a_picture(why: image::ImageError) -> String {
         }
         _ => format!("it is not a whole PNG or JPEG: {why}"),
     }
+}
+
+/// Blue where the warp is on top, red where the weft is; between them the nearer one counts.
+fn mask(bytes: &[u8]) -> Result<Mask, String> {
+    let image = reader(bytes)?.decode().map_err(not_a_picture)?.into_rgb8();
+    let warp_up = image.pixels().map(|pixel| pixel.0[2] > pixel.0[0]);
+    Ok(Mask::new(image.width() as usize, warp_up.collect()))
 }

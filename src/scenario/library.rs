@@ -26,6 +26,11 @@ pub fn bundled() -> impl Iterator<Item = Bundled> {
     })
 }
 
+/// A file that a bundled scenario names, by its path beside them.
+pub fn file(path: &str) -> Option<&'static [u8]> {
+    SCENARIOS.get_file(path).map(include_dir::File::contents)
+}
+
 /// The names of all bundled scenarios, sorted.
 pub fn names() -> Vec<&'static str> {
     let mut names: Vec<_> = bundled().map(|scenario| scenario.name).collect();

@@ -82,15 +82,18 @@ pub struct FractalLook {
     pub unit_yarns: u32,
     /// How much paler a place without any colour is, 0 to 1.
     pub contrast: f64,
+    /// How much of the roundness of yarns is seen, 0 (flat, as in paper Y) to 1.
+    pub relief: f64,
 }
 
 impl Default for FractalLook {
     fn default() -> Self {
         FractalLook {
-            roughness: 0.45,
-            threshold: 0.35,
-            unit_yarns: 6,
-            contrast: 0.75,
+            roughness: 0.5,
+            threshold: 0.3,
+            unit_yarns: 8,
+            contrast: 0.6,
+            relief: 0.7,
         }
     }
 }
@@ -206,6 +209,7 @@ impl LookSpec {
             at.field("threshold").within(look.threshold, 0.0..=1.0)?;
             at.field("unit_yarns").within(look.unit_yarns, 1..=1000)?;
             at.field("contrast").within(look.contrast, 0.0..=1.0)?;
+            at.field("relief").within(look.relief, 0.0..=1.0)?;
         }
         let at = at.field("yarn");
         let turn = self.yarn.turn;

@@ -3,6 +3,7 @@
 //! [`Scenario`] holds what a file says; [`Experiment`] is a scenario that has been read, checked
 //! and given its pictures, ready to run. `docs` of the fields are the reference of the format.
 
+mod beside;
 pub mod check;
 mod chemistry;
 mod error;
@@ -17,16 +18,18 @@ pub mod units;
 
 use serde::{Deserialize, Serialize};
 
+pub use beside::Beside;
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
 pub use error::{ScenarioError, SourceError};
 pub use experiment::{Experiment, Origin};
-pub use fabric::{ClothSpec, Paths, YarnSpec};
-pub use images::{Images, Photo};
+pub use fabric::{ClothSpec, Kasuri, KasuriSpec, Paths, YarnSpec};
+pub use images::{Images, Photo, Wanted};
 pub use library::{Bundled, bundled, names as bundled_names};
 pub use look::{Colours, FractalLook, LARGEST_SCALE, LookSpec, Show, Side, TextureLook, YarnLook};
 pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, Solver, SupplySpec};
 pub use units::{Length, Time};
 
+use crate::cloth::Weave;
 use crate::pattern::Pattern;
 use check::{Checker, Problem};
 
@@ -118,6 +121,26 @@ impl Scenario {
         }
     }
 
+    /// Every picture that the scenario names, each with its place and what is wanted of it.
+    pub fn pictures(&self) -> Vec<(&str, Wanted, Checker)> {
+        let mut all: Vec<_> = Vec::new();
+        for (pattern, at) in self.patterns() {
+            if let Pattern::Image { file, fit } = pattern {
+                all.push((file.as_str(), Wanted::Brightness(*fit), at.field("file")));
+            }
+        }
+        let root = Checker::root();
+        if let Weave::Mask { file } = &self.cloth.weave {
+            let at = root.field("cloth").field("weave").field("file");
+            all.push((file, Wanted::Mask, at));
+        }
+        if let TextureLook::Photo { file, fit } = &self.look.texture {
+            let at = root.field("look").field("texture").field("file");
+            all.push((file, Wanted::Photo(*fit), at));
+        }
+        all
+    }
+
     /// Every pattern that the scenario names, each with its place.
     pub fn patterns(&self) -> Vec<(&Pattern, Checker)> {
         let at = Checker::root();
@@ -125,6 +148,11 @@ impl Scenario {
         for (i, supply) in self.supply.iter().enumerate() {
             waiting.push((supply.shape(), at.field("supply").item(i).field("shape")));
         }
+        waiting.extend(
+            self.cloth
+                .kasuri
+                .patterns(&at.field("cloth").field("kasuri")),
+        );
         let mut all = Vec::new();
         while let Some((pattern, place)) = waiting.pop() {
             waiting.extend(pattern.parts(&place));

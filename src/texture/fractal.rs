@@ -1,12 +1,12 @@
 //! Fractal yarns (paper Y): a unit yarn is a curve drawn by midpoint displacement, coloured where it
 //! lies above a threshold, by its height; a yarn is the mean of several unit yarns.
 
-use rayon::prelude::*;
-
-use super::shade::{Shade, seen};
+use super::geometry::{Geometry, Place};
+use super::shade::{Shade, samples, warp_share};
+use super::yarn::YarnShade;
 use crate::chance::{Chance, Purpose, Sequence};
-use crate::cloth::{Cloth, Layer};
-use crate::scenario::FractalLook;
+use crate::cloth::{Cloth, Yarns};
+use crate::scenario::{FractalLook, YarnLook};
 
 /// A curve by midpoint displacement of at least `length` points, 0 to 1.
 ///
@@ -55,39 +55,40 @@ pub fn yarn(look: &FractalLook, length: usize, chance: &mut Sequence) -> Vec<f32
 }
 
 /// Draws undyed cloth of fractal yarns at `scale` pixels a cell, row by row: the yarn that is on top
-/// gives each pixel its density (paper Y §3).
+/// gives each pixel its density (paper Y §3). Paper Y's cloth is flat and leaves its relief for later;
+/// here as much of it is added as the look says.
 pub fn draw(cloth: &Cloth, look: &FractalLook, seed: u64, scale: usize) -> Vec<Shade> {
-    let (nx, ny) = (cloth.grid.nx, cloth.grid.ny);
-    let yarns = |purpose, count: usize, length| -> Vec<Vec<f32>> {
+    let yarns = |purpose, yarns: &Yarns, length| -> Vec<Vec<f32>> {
         let mut chance = Chance(seed).sequence(purpose);
-        (0..count)
-            .map(|_| yarn(look, length, &mut chance))
-            .collect()
+        let all = 0..yarns.yarns.len();
+        all.map(|_| yarn(look, length, &mut chance)).collect()
     };
-    let weft = yarns(Purpose::WeftFractal, cloth.weft.yarns.len(), nx);
-    let warp = yarns(Purpose::WarpFractal, cloth.warp.yarns.len(), ny);
-    let paler = |density: f32| 1.0 - look.contrast as f32 * (1.0 - density);
-    let mut picture = vec![Shade::default(); nx * scale * ny * scale];
-    picture
-        .par_chunks_mut(nx * scale)
-        .enumerate()
-        .for_each(|(py, row)| {
-            let y = py / scale;
-            for (px, shade) in row.iter_mut().enumerate() {
-                let x = px / scale;
-                let layer = seen(cloth, y, x);
-                let value = if !cloth.fibre(layer, y, x) {
-                    1.0 - look.contrast as f32
-                } else {
-                    paler(match layer {
-                        Layer::Weft => weft[cloth.weft.number(y)][x],
-                        Layer::Warp => warp[cloth.warp.number(x)][y],
-                    })
-                };
-                *shade = Shade::new(layer, value);
-            }
-        });
-    picture
+    let densities = [
+        yarns(Purpose::WeftFractal, &cloth.weft, cloth.grid.nx),
+        yarns(Purpose::WarpFractal, &cloth.warp, cloth.grid.ny),
+    ];
+    let even = YarnLook {
+        roughness: 0.0,
+        hairiness: 0.0,
+        unevenness: 0.5,
+        ..YarnLook::default()
+    };
+    let light = YarnShade::new(even, cloth, seed, scale);
+    let (contrast, relief) = (look.contrast as f32, look.relief as f32);
+    let density = |place: &Place| {
+        let point = place.seen();
+        let yarn = &densities[place.layer as usize][point.yarn];
+        let along = (point.along - 0.5).clamp(0.0, (yarn.len() - 1) as f32);
+        let cell = (along as usize).min(yarn.len() - 1);
+        let next = yarn[(cell + 1).min(yarn.len() - 1)];
+        yarn[cell] + (next - yarn[cell]) * (along - cell as f32)
+    };
+    Geometry::new(cloth, &even, seed).scan(scale, samples(scale), |places| {
+        let paler = |place| 1.0 - contrast * (1.0 - density(place));
+        let sum: f32 = places.iter().map(paler).sum();
+        let shade = sum / places.len() as f32 * (1.0 - relief * (1.0 - light.smooth(places)));
+        Shade::new(warp_share(places), shade)
+    })
 }
 
 #[cfg(test)]

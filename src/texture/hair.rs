@@ -111,7 +111,7 @@ impl Pen<'_> {
             let pixel = &mut self.picture[y as usize * self.size.0 + x as usize];
             let shade = pixel.value();
             let lighter = shade + alpha * cover * (BRIGHT - shade).max(0.0);
-            *pixel = Shade::new(pixel.layer(), lighter);
+            *pixel = pixel.shaded(lighter);
         }
     }
 }

@@ -48,7 +48,7 @@ pub struct Scale(pub u32);
 pub struct Texture {
     /// Pixels along one side of a cell.
     pub scale: usize,
-    /// Layer and shade of every pixel, row by row.
+    /// Layers and shade of every pixel, row by row.
     shade: Vec<Shade>,
     /// The photograph that the colours are multiplied with, if there is one: RGB of every pixel.
     photo: Option<Vec<u8>>,
@@ -189,37 +189,48 @@ impl Texture {
         let shades = &self.shade[py * width..][..width];
         let (weft, warp) = (&self.columns[0][..width], &self.columns[1][..width]);
         let pixels = row.as_chunks_mut::<3>().0;
-        if self.tints.is_none() && self.photo.is_none() {
-            for (px, (pixel, shade)) in pixels.iter_mut().zip(shades).enumerate() {
-                let amount = match shade.layer() {
-                    Layer::Weft => weft[px].of(lines[0]),
-                    Layer::Warp => warp[px].of(lines[1]),
-                };
-                *pixel = display(self.ramp.colour(amount), shade.value());
-            }
-            return;
-        }
-        for (px, (pixel, shade)) in pixels.iter_mut().zip(shades).enumerate() {
-            let layer = shade.layer();
+        let colour = |px: usize, layer: Layer| {
             let amount = match layer {
                 Layer::Weft => weft[px].of(lines[0]),
                 Layer::Warp => warp[px].of(lines[1]),
             };
-            let mut colour = self.ramp.colour(amount);
-            if let Some([weft, warp]) = &self.tints {
-                let tint = match layer {
-                    Layer::Weft => weft[py],
-                    Layer::Warp => warp[px],
-                };
-                colour = times(colour, tint);
-            }
-            if let Some(photo) = &self.photo {
-                let at = 3 * (py * width + px);
-                colour = times(colour, [0, 1, 2].map(|i| f32::from(photo[at + i]) / 255.0));
-            }
+            self.ramp.colour(amount)
+        };
+        let plain = self.tints.is_none() && self.photo.is_none();
+        for (px, (pixel, shade)) in pixels.iter_mut().zip(shades).enumerate() {
+            let seen = |layer| match plain {
+                true => colour(px, layer),
+                false => self.tinted(colour(px, layer), layer, py, px),
+            };
+            let colour = match shade.only() {
+                Some(layer) => seen(layer),
+                None => mixed(seen(Layer::Weft), seen(Layer::Warp), shade.warp()),
+            };
             *pixel = display(colour, shade.value());
         }
     }
+
+    /// A colour on the undyed cloth of a pixel, where that is not white.
+    fn tinted(&self, mut colour: Rgb, layer: Layer, py: usize, px: usize) -> Rgb {
+        if let Some([weft, warp]) = &self.tints {
+            colour = times(
+                colour,
+                match layer {
+                    Layer::Weft => weft[py],
+                    Layer::Warp => warp[px],
+                },
+            );
+        }
+        if let Some(photo) = &self.photo {
+            let at = 3 * (py * self.columns[0].len() + px);
+            colour = times(colour, [0, 1, 2].map(|i| f32::from(photo[at + i]) / 255.0));
+        }
+        colour
+    }
+}
+
+fn mixed(a: Rgb, b: Rgb, share: f32) -> Rgb {
+    [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]))
 }
 
 fn times(a: Rgb, b: Rgb) -> Rgb {
@@ -269,8 +280,11 @@ pub fn darkest_at(scenario: &Scenario) -> f64 {
     let (warp, weft) = (&scenario.cloth.warp, scenario.cloth.weft());
     let porosity = warp.porosity.max(weft.porosity);
     let fibre = (1.0 - warp.porosity).max(1.0 - weft.porosity).max(0.001);
+    let kasuri = scenario.cloth.kasuri.is_there();
     match (scenario.look.show, scenario.adsorption) {
         (Show::BoundOnly, _) => fibre,
+        (Show::FreeAndBound, None) if kasuri && scenario.supply.is_empty() => fibre,
+        (Show::FreeAndBound, None) if kasuri => 1.0,
         (Show::FreeAndBound, None) => porosity,
         (Show::FreeAndBound, Some(_)) => 1.0,
     }

@@ -78,14 +78,19 @@ impl YarnShade {
 
     /// The shade of a pixel from what is seen in it, about 1 where white cotton is brightest.
     pub fn of(&self, places: &[Place]) -> f32 {
-        let sum: f32 = places.iter().map(|place| self.at(place)).sum();
         // Fibres are far finer than a pixel or wider: once a pixel is enough.
         let yarn = places.iter().find(|place| place.seen().is_yarn());
         let surface = yarn.map_or(1.0, |place| {
             let (run, point) = (&self.runs[place.layer as usize], place.seen());
             self.fibres(run, point) * self.unevenness(run, point)
         });
-        sum / places.len() as f32 * surface
+        self.smooth(places) * surface
+    }
+
+    /// The shade of a pixel without its fibres.
+    pub fn smooth(&self, places: &[Place]) -> f32 {
+        let sum: f32 = places.iter().map(|place| self.at(place)).sum();
+        sum / places.len() as f32
     }
 
     /// The shade of a smooth and even yarn.
