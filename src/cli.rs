@@ -78,6 +78,9 @@ pub struct Record {
     /// Also write NumPy archives: cloth.npz, and state_00000.npz for every frame
     #[arg(long)]
     pub fields: bool,
+    /// Also write height.png and normal.png, the relief of the undyed cloth, for a renderer
+    #[arg(long)]
+    pub maps: bool,
     /// Also make video.mp4 of the frames; needs ffmpeg
     #[arg(long)]
     pub video: bool,

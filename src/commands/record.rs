@@ -28,6 +28,7 @@ pub fn run(arguments: &Record) -> ExitCode {
         steps: arguments.steps,
         scale: arguments.scale,
         fields: arguments.fields,
+        maps: arguments.maps,
         video: arguments.video,
         force: arguments.force,
     };

@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::RecordError;
 use super::manifest::{MANIFEST, Manifest};
+use super::maps::MAPS;
 
 /// The folder of a recording.
 #[derive(Debug, Clone)]
@@ -30,6 +31,9 @@ pub(super) fn names_of(recording: &Manifest) -> BTreeSet<String> {
     }
     if recording.fields {
         names.insert("cloth.npz".into());
+    }
+    if recording.maps {
+        names.extend(MAPS.map(Into::into));
     }
     if recording.video {
         names.insert("video.mp4".into());

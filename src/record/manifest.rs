@@ -37,6 +37,9 @@ pub struct Manifest {
     pub frames_planned: u32,
     /// Whether the fields are kept beside the frames.
     pub fields: bool,
+    /// Whether maps of the relief of the cloth are there.
+    #[serde(default)]
+    pub maps: bool,
     /// Whether a film was to be made of them.
     pub video: bool,
     /// Whether it reached its end; false if it was stopped before.

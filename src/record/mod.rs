@@ -7,6 +7,7 @@ mod error;
 mod fields;
 mod folder;
 mod manifest;
+mod maps;
 mod plan;
 mod recorder;
 mod sheet;
@@ -42,6 +43,8 @@ pub struct Options {
     pub scale: Option<u32>,
     /// Whether to keep the fields behind every frame.
     pub fields: bool,
+    /// Whether to write the relief of the undyed cloth, as maps of height and normals.
+    pub maps: bool,
     /// Whether to make a film of the frames.
     pub video: bool,
     /// Whether to replace a recording that is already in the folder.
@@ -101,6 +104,7 @@ pub fn record(
         pixels_per_cell: scale,
         frames_planned: plan.frames(),
         fields,
+        maps: options.maps,
         video: options.video,
         complete: false,
         frames: Vec::new(),
@@ -114,6 +118,9 @@ pub fn record(
         .insert_resource(recorder);
     prepare(&mut app, experiment.clone());
     let world = app.world_mut();
+    if options.maps {
+        maps::write(&folder, world.resource(), scenario, scale as usize)?;
+    }
 
     let mut complete = true;
     for stop in &plan.stops {
