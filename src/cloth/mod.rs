@@ -14,7 +14,7 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 pub use grid::{Grid, Layer};
-pub use weave::{Face, Weave, WeaveMatrix};
+pub use weave::{Face, LARGEST_REPEAT, Weave, WeaveMatrix};
 pub use yarns::{Yarn, Yarns};
 
 use crate::chance::{Chance, Purpose};

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::process::ExitCode;
 
 use super::{FAILED, complain, print};
+use dyelapse::draft::{self, Draft};
 use dyelapse::scenario::{Experiment, bundled_names};
 
 pub fn run() -> ExitCode {
@@ -15,6 +16,18 @@ pub fn run() -> ExitCode {
             Ok(experiment) => {
                 let title = &experiment.scenario.title;
                 let _ = writeln!(list, "{name:widest$}  {title}");
+            }
+            Err(why) => {
+                complain(&why);
+                return ExitCode::from(FAILED);
+            }
+        }
+    }
+    let _ = writeln!(list, "\ndrafts for `dyelapse wif`:");
+    for name in draft::bundled_names() {
+        match Draft::load(name) {
+            Ok(reading) => {
+                let _ = writeln!(list, "{name:widest$}  {}", reading.draft.title());
             }
             Err(why) => {
                 complain(&why);

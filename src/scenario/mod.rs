@@ -18,6 +18,7 @@ pub mod units;
 use serde::{Deserialize, Serialize};
 
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
+pub(crate) use error::nearest;
 pub use error::{ScenarioError, SourceError};
 pub use experiment::{Experiment, Origin};
 pub use fabric::{ClothSpec, Paths, YarnSpec};
