@@ -8,8 +8,8 @@ use std::process::ExitCode;
 
 use super::{BAD_INPUT, FAILED, complain, print, say};
 use crate::cli::Wif;
-use dyelapse::draft::{self, Draft, Reading, wif};
-use dyelapse::scenario::Experiment;
+use dyelapse::draft::{self, Draft, DraftError, Reading, wif};
+use dyelapse::scenario::{Experiment, ScenarioError};
 
 pub fn run(arguments: &Wif) -> ExitCode {
     let what = arguments.what.as_str();
@@ -21,6 +21,7 @@ pub fn run(arguments: &Wif) -> ExitCode {
     }
     let experiment = match Experiment::load(what) {
         Ok(experiment) => experiment,
+        Err(ScenarioError::Unknown { nearest: None, .. }) => return refuse_unknown(what),
         Err(why) => return refuse(&why),
     };
     match Draft::of_scenario(&experiment.scenario) {
@@ -40,6 +41,21 @@ fn is_draft(what: &str) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("wif"));
     let bundled = || draft::bundled_names().contains(&what) && !path.exists();
     ends || bundled()
+}
+
+/// Nothing has this name, nor is it like that of a scenario; perhaps it is like that of a draft.
+fn refuse_unknown(what: &str) -> ExitCode {
+    match Draft::load(what) {
+        Err(DraftError::Unknown {
+            nearest: Some(nearest),
+            ..
+        }) => refuse(&format!(
+            "there is no file, scenario or draft named `{what}`; did you mean `{nearest}`?"
+        )),
+        _ => refuse(&format!(
+            "there is no file, scenario or draft named `{what}`\n`dyelapse list` shows the bundled ones"
+        )),
+    }
 }
 
 /// Sums a draft up; writes it anew if asked to.

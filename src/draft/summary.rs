@@ -7,7 +7,7 @@ use super::{Draft, Floats, Lifting, Shed, Thread, floats, repeat};
 use crate::cloth::WeaveMatrix;
 
 /// The widest and the tallest weave that is drawn.
-const DRAWN: (usize, usize) = (64, 40);
+const DRAWN: (usize, usize) = (64, 64);
 
 /// The most colours of one direction that are named.
 const COLOURS: usize = 6;
@@ -83,6 +83,9 @@ fn count(n: usize, what: &str) -> String {
 }
 
 fn told(floats: Floats, thread: &str, crossed: &str) -> String {
+    if floats.longest == 0 {
+        return format!("no {thread} bound in at all");
+    }
     let mut text = format!("{thread}s over at most {}", count(floats.longest, crossed));
     if floats.unbound > 0 {
         let _ = write!(

@@ -149,7 +149,11 @@ impl<'t> Lists<'t> {
         (!missing.is_empty()).then(|| runs(&missing))
     }
 
-    /// How many threads there are: as many as declared, or as have a list if these are more.
+    /// How many threads there are: as many as declared, or as have a list if these are more. Beyond the
+    /// declared ones, a thread on nothing is none.
+    ///
+    /// # Errors
+    /// Nothing tells of any thread.
     pub fn threads(
         &self,
         (section, many): (&str, &str),
@@ -157,13 +161,15 @@ impl<'t> Lists<'t> {
         remarks: &mut Remarks,
     ) -> Result<usize, DraftError> {
         let last = self.last();
+        let named = |(_, (_, list)): &(&usize, &(Entry, Vec<u16>))| !list.is_empty();
+        let named = self.0.iter().rev().find(named).map_or(0, |(n, _)| *n);
         match declared {
-            Some(declared) if declared.count >= last => Ok(declared.count),
+            Some(declared) if declared.count >= named => Ok(declared.count),
             Some(declared) => {
                 remarks.note("few", declared.entry.place(), || {
-                    format!("there are {last} {many}; that is how many are read")
+                    format!("there are {named} {many}; that is how many are read")
                 });
-                Ok(last)
+                Ok(named)
             }
             None if last > 0 => Ok(last),
             None => {
