@@ -9,7 +9,9 @@ use dyelapse::scenario::{Experiment, bundled_names};
 
 pub fn run() -> ExitCode {
     let names = bundled_names();
-    let widest = names.iter().map(|name| name.len()).max().unwrap_or(0);
+    let drafts = draft::bundled_names();
+    let all = names.iter().chain(&drafts);
+    let widest = all.map(|name| name.len()).max().unwrap_or(0);
     let mut list = String::new();
     for name in names {
         match Experiment::load(name) {
@@ -24,7 +26,7 @@ pub fn run() -> ExitCode {
         }
     }
     let _ = writeln!(list, "\ndrafts for `dyelapse wif`:");
-    for name in draft::bundled_names() {
+    for name in drafts {
         match Draft::load(name) {
             Ok(reading) => {
                 let _ = writeln!(list, "{name:widest$}  {}", reading.draft.title());

@@ -164,7 +164,7 @@ fn repeat_where(
 /// The smallest divisor d of n after which things 0 to n − 1 come again.
 fn period(n: usize, same: impl Fn(usize, usize) -> bool) -> usize {
     (1..n)
-        .filter(|d| n % d == 0)
+        .filter(|d| n.is_multiple_of(*d))
         .find(|d| (0..n - d).all(|i| same(i, i + d)))
         .unwrap_or(n)
 }

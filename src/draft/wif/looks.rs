@@ -263,7 +263,7 @@ fn unit(sections: &Sections, names: Names, remarks: &mut Remarks) -> f64 {
 /// A spacing or thickness, mm; none where it is 0 or cannot be.
 fn measure(entry: &Entry, unit: f64, remarks: &mut Remarks) -> Option<f64> {
     match values::real(entry.value).map(|value| value * unit) {
-        Some(mm) if mm == 0.0 => None,
+        Some(0.0) => None,
         Some(mm) if mm > 0.0 && mm <= WIDEST_MM => Some(mm),
         _ => {
             remarks.note("measure", entry.place(), || {

@@ -16,7 +16,7 @@
 //! | `[COLOR PALETTE]`, `[COLOR TABLE]` | the range of colour values, the colours by number |
 //! | `[TEXT]`, `[NOTES]` | title, author, notes |
 //!
-//! Files in the wild are sloppy, and [`read`] is lenient by one rule: what would change the weave and
+//! Files in the wild are sloppy, and [`read()`] is lenient by one rule: what would change the weave and
 //! cannot be understood is an error; what is about looks, or can be understood although it is wrong,
 //! is a warning. `docs/drafts.md` lists the cases. [`write()`] is strict.
 

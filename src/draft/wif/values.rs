@@ -216,7 +216,7 @@ mod tests {
             let range = Range::named(text).unwrap();
             let middle = f64::midpoint(least, most);
             assert_eq!(range.bytes([least, middle, most]), ([0, 128, 255], true));
-            assert_eq!(range.bytes([least - 1.0, most + 1.0, least]).1, false);
+            assert!(!range.bytes([least - 1.0, most + 1.0, least]).1);
         }
         for bad in ["", "5,5", "9,1", "a,b", "1,2,3"] {
             assert_eq!(Range::named(bad), None, "{bad}");
