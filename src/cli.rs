@@ -48,6 +48,17 @@ Examples:
     },
     /// List the scenarios that come with the program
     List,
+    /// Sum up a weaving draft (WIF), or write the weave of a scenario as one
+    ///
+    /// Of a draft it tells threads, loom, colours, measures, floats, and what is odd about the file;
+    /// with --out it also writes it anew, in good order. Of a scenario it prints the WIF, or writes it
+    /// to --out.
+    #[command(after_help = "\
+Examples:
+  dyelapse wif houndstooth
+  dyelapse wif old.wif --out clean.wif
+  dyelapse wif fig10b --out twill.wif")]
+    Wif(Wif),
     /// Print the completions of a shell
     ///
     /// For bash: dyelapse completions bash > ~/.local/share/bash-completion/completions/dyelapse
@@ -90,4 +101,18 @@ pub struct Record {
     /// Say nothing but errors
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// `dyelapse wif`.
+#[derive(Debug, clap::Args)]
+pub struct Wif {
+    /// A draft (a .wif file, or the name of a bundled one), or a scenario
+    #[arg(value_name = "DRAFT or SCENARIO")]
+    pub what: String,
+    /// Write a WIF to this file
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Replace the file if it is there
+    #[arg(long)]
+    pub force: bool,
 }

@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | [`scenario`] | a RON file says what is dyed and how | [`scenario::Experiment`] |
 //! | [`pattern`] | where resist and dye are | — |
+//! | [`draft`] | weavers' drafts are read and written | [`draft::Draft`] |
 //! | [`cloth`] | yarns are woven into two layers of cells | [`Cloth`](cloth::Cloth) |
 //! | [`schedule`] | the order of the stages, the clock of the process | [`ProcessClock`](schedule::ProcessClock) |
 //! | [`kasuri`] | yarns that were dyed before they were woven | — |
@@ -40,6 +41,7 @@ pub mod adsorption;
 pub mod chance;
 pub mod cloth;
 pub mod diffusion;
+pub mod draft;
 pub mod kasuri;
 pub mod ledger;
 pub mod memory;

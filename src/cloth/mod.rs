@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 pub use grid::{Grid, Layer};
 pub use mask::Mask;
-pub use weave::{Face, Weave, WeaveMatrix};
+pub use weave::{Face, LARGEST_REPEAT, Weave, WeaveMatrix};
 pub use yarns::{Span, Thread, Yarn, Yarns};
 
 use crate::chance::{Chance, Purpose};

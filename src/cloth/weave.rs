@@ -184,7 +184,10 @@ impl WeaveMatrix {
         }
     }
 
-    fn from_rule(ends: u32, picks: u32, rule: impl Fn(u32, u32) -> bool) -> Self {
+    /// A weave from a rule: whether the warp is on top at an end and a pick. It repeats after `ends`
+    /// ends and `picks` picks, at least one of each.
+    pub fn from_rule(ends: u32, picks: u32, rule: impl Fn(u32, u32) -> bool) -> Self {
+        let (ends, picks) = (ends.max(1), picks.max(1));
         let warp_up = (0..picks)
             .flat_map(|p| (0..ends).map(move |e| (e, p)))
             .map(|(e, p)| rule(e, p))

@@ -282,7 +282,7 @@ fn did_you_mean(nearest: Option<&str>) -> String {
 }
 
 /// The valid name most like what was written, if any is.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     written: &str,
     valid: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {

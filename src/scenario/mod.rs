@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 pub use beside::Beside;
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
+pub(crate) use error::nearest;
 pub use error::{ScenarioError, SourceError};
 pub use experiment::{Experiment, Origin};
 pub use fabric::{ClothSpec, Kasuri, KasuriSpec, Paths, YarnSpec};
