@@ -4,23 +4,31 @@ use std::fmt::Write;
 use std::process::ExitCode;
 
 use super::{FAILED, complain, print};
-use dyelapse::scenario::{Experiment, bundled_names};
+use dyelapse::scenario::{Experiment, Figure, ScenarioError, bundled_names, figure_names};
 
 pub fn run() -> ExitCode {
-    let names = bundled_names();
-    let widest = names.iter().map(|name| name.len()).max().unwrap_or(0);
-    let mut list = String::new();
-    for name in names {
-        match Experiment::load(name) {
-            Ok(experiment) => {
-                let title = &experiment.scenario.title;
-                let _ = writeln!(list, "{name:widest$}  {title}");
-            }
-            Err(why) => {
-                complain(&why);
-                return ExitCode::from(FAILED);
-            }
+    match list() {
+        Ok(list) => print(list.as_bytes()),
+        Err(why) => {
+            complain(&why);
+            ExitCode::from(FAILED)
         }
     }
-    print(list.as_bytes())
+}
+
+fn list() -> Result<String, ScenarioError> {
+    let (scenarios, figures) = (bundled_names(), figure_names());
+    let names = scenarios.iter().chain(&figures);
+    let widest = names.map(|name| name.len()).max().unwrap_or(0);
+    let mut list = String::new();
+    for name in scenarios {
+        let title = Experiment::load(name)?.scenario.title;
+        let _ = writeln!(list, "{name:widest$}  {title}");
+    }
+    let _ = writeln!(list, "\nFigures, for `dyelapse sheet`:");
+    for name in figures {
+        let title = Figure::of(&[name])?.title;
+        let _ = writeln!(list, "{name:widest$}  {title}");
+    }
+    Ok(list)
 }

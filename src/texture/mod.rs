@@ -4,6 +4,8 @@ mod colour;
 mod shade;
 mod yarn;
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use rayon::prelude::*;
 
@@ -14,7 +16,7 @@ pub use shade::seen;
 use crate::adsorption::BoundDye;
 use crate::cloth::{Cloth, Layer};
 use crate::diffusion::FreeDye;
-use crate::scenario::{Scenario, Show};
+use crate::scenario::{Experiment, LookSpec, Scenario, Show};
 use crate::schedule::{DyeFrame, FrameSet, Prepare, PrepareSet, TheExperiment};
 
 /// Pictures of the cloth.
@@ -152,6 +154,18 @@ pub fn darkest_at(scenario: &Scenario) -> f64 {
         (Show::FreeAndBound, None) => porosity,
         (Show::FreeAndBound, Some(_)) => 1.0,
     }
+}
+
+/// Draws the cloth of a prepared world in another way from now on. The dye is not touched.
+pub fn change_look(world: &mut World, look: LookSpec) {
+    let mut experiment = Experiment::clone(&world.resource::<TheExperiment>().0);
+    experiment.scenario.look = look;
+    let scale = world.get_resource::<Scale>().map(|scale| scale.0);
+    let scale = scale.unwrap_or(look.pixels_per_cell) as usize;
+    let cloth = world.resource::<Cloth>();
+    let texture = Texture::new(cloth, &experiment.scenario, scale);
+    world.insert_resource(texture);
+    world.insert_resource(TheExperiment(Arc::new(experiment)));
 }
 
 fn prepare(
