@@ -191,7 +191,7 @@ fn share_that_binds(cloth: &Dyed) -> f64 {
 /// there. The corner of the cloth is 141 cells away.
 fn front(cloth: &Dyed) -> f64 {
     let reached = cloth.cells().filter(|(i, ..)| cloth.free[*i] >= 0.01 * 0.5);
-    let distances = reached.map(|(_, y, x)| cloth.from_the_middle(y, x));
+    let distances = reached.map(|(_, y, x)| cloth.distance_from_middle(y, x));
     distances.fold(0.0, f64::max)
 }
 

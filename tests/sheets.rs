@@ -52,6 +52,17 @@ fn every_broken_figure_gets_exactly_the_expected_message() {
     assert!(seen > 10, "only {seen} broken figures were found");
 }
 
+#[test]
+fn any_beginning_of_a_figure_is_told_and_none_panics() {
+    let figure = bundled_figures().find(|f| f.name == "fig10").unwrap();
+    for end in (0..figure.text.len()).filter(|end| figure.text.is_char_boundary(*end)) {
+        let text = &figure.text[..end];
+        let parsed = Figure::parse("cut.ron", Origin::Memory, text);
+        let whole = text.trim_end().ends_with("\n)");
+        assert_eq!(parsed.is_ok(), whole, "{text}");
+    }
+}
+
 /// Two small cloths, one of them twice.
 const SMALL: &str = r#"(
     title: "Small",

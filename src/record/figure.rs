@@ -24,16 +24,36 @@ const JPEG_QUALITY: u8 = 80;
 /// Makes a figure: all panels with their labels in one picture. The same figure gives the same
 /// picture.
 ///
-/// `go_on` is told the panel, counted from 0, and the step, and asked whether to go on; where it says
-/// no there is no picture.
+/// `go_on` is told the panel, in the order of the work, and the step, and asked whether to go on;
+/// where it says no there is no picture.
 ///
 /// # Errors
 /// [`RecordError::Memory`] where a cloth does not fit.
 pub fn draw_figure(
     figure: &Figure,
-    mut go_on: impl FnMut(usize, u64) -> bool,
+    go_on: impl FnMut(usize, u64) -> bool,
 ) -> Result<Option<Picture>, RecordError> {
-    let mut pictures: Vec<Option<Picture>> = vec![None; figure.panels.len()];
+    let mut sheet = Sheet::new(&figure.title).arranged(figure.columns, figure.panel_pixels);
+    let pictures = draw_panels(figure, go_on)?;
+    let sheet = pictures.map(|pictures| {
+        for (picture, panel) in pictures.iter().zip(&figure.panels) {
+            sheet.add(picture, panel.label.clone());
+        }
+        sheet.draw()
+    });
+    Ok(sheet)
+}
+
+/// Makes the pictures of a figure's panels, each by itself and as large as it is, in their order.
+/// `go_on` and errors are those of [`draw_figure`].
+///
+/// # Errors
+/// [`RecordError::Memory`] where a cloth does not fit.
+pub fn draw_panels(
+    figure: &Figure,
+    mut go_on: impl FnMut(usize, u64) -> bool,
+) -> Result<Option<Vec<Picture>>, RecordError> {
+    let mut pictures = vec![Picture::default(); figure.panels.len()];
     let mut done = 0;
     for (i, experiment) in figure.experiments.iter().enumerate() {
         let is_its = |(_, panel): &(usize, &Panel)| panel.experiment == i;
@@ -66,18 +86,14 @@ pub fn draw_figure(
             look(world);
             let scale = panel.look.pixels_per_cell as usize;
             let whole = world.resource::<Picture>();
-            pictures[place] = Some(match panel.part {
+            pictures[place] = match panel.part {
                 None => whole.clone(),
                 Some(part) => cut_out(whole, part, scale),
-            });
+            };
             done += 1;
         }
     }
-    let mut sheet = Sheet::new(&figure.title).arranged(figure.columns, figure.panel_pixels);
-    for (picture, panel) in pictures.iter().flatten().zip(&figure.panels) {
-        sheet.add(picture, panel.label.clone());
-    }
-    Ok(Some(sheet.draw()))
+    Ok(Some(pictures))
 }
 
 /// A part of a picture that has `scale` pixels a cell; as much of it as there is.

@@ -18,7 +18,7 @@ mod writer;
 use std::path::{Path, PathBuf};
 
 pub use error::RecordError;
-pub use figure::{PictureFile, draw_figure};
+pub use figure::{PictureFile, draw_figure, draw_panels};
 pub use manifest::{Frame, Manifest};
 pub use plan::{Plan, Stop};
 pub use recorder::{RecordPlugin, Recorder};

@@ -47,10 +47,10 @@ impl Dyed {
     }
 
     /// Cells from the middle of the cloth to a place.
-    pub fn from_the_middle(&self, y: usize, x: usize) -> f64 {
+    pub fn distance_from_middle(&self, y: usize, x: usize) -> f64 {
         let Grid { nx, ny } = self.cloth.grid;
         let away = |at: usize, cells: usize| at as f64 + 0.5 - cells as f64 / 2.0;
-        away(x, nx).hypot(away(y, ny))
+        libm::hypot(away(x, nx), away(y, ny))
     }
 
     /// The share of all dye that is at most so many cells from the middle.
@@ -59,7 +59,7 @@ impl Dyed {
         for (i, y, x) in self.cells() {
             let dye = self.free[i] + self.bound[i];
             all += dye;
-            if self.from_the_middle(y, x) <= radius {
+            if self.distance_from_middle(y, x) <= radius {
                 near += dye;
             }
         }
