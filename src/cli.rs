@@ -40,13 +40,23 @@ Examples:
   dyelapse record seikaiha --steps 12500 --frames 100 --video
   dyelapse record fig9b --fields       also for NumPy: numpy.load('state_00000.npz')")]
     Record(Record),
-    /// Tell whether scenarios are right, without running them
+    /// Make one labelled picture of several scenarios, or of a figure
+    ///
+    /// A figure lists panels: scenarios, and what to show of each. Those of the papers come with the
+    /// program; `dyelapse list` names them.
+    #[command(after_help = "\
+Examples:
+  dyelapse sheet fig8                  the figure of the paper
+  dyelapse sheet fig10a fig10b fig10c --columns 3 --out weaves.jpg
+  dyelapse sheet my_cloth.ron --steps 1000 --scale 4")]
+    Sheet(Sheet),
+    /// Tell whether scenarios and figures are right, without running them
     Check {
-        /// Scenario files, or names of bundled scenarios
-        #[arg(required = true, value_name = "SCENARIO")]
+        /// Files of scenarios or figures, or names of bundled ones
+        #[arg(required = true, value_name = "NAME")]
         scenarios: Vec<String>,
     },
-    /// List the scenarios that come with the program
+    /// List the scenarios and figures that come with the program
     List,
     /// Sum up a weaving draft (WIF), or write the weave of a scenario as one
     ///
@@ -115,4 +125,30 @@ pub struct Wif {
     /// Replace the file if it is there
     #[arg(long)]
     pub force: bool,
+}
+
+/// `dyelapse sheet`.
+#[derive(Debug, clap::Args)]
+pub struct Sheet {
+    /// Files of figures or scenarios, or names of bundled ones
+    #[arg(required = true, value_name = "NAME")]
+    pub names: Vec<String>,
+    /// The picture, .png or .jpg [default: NAME.png]
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Panels in a row [default: what the figure says]
+    #[arg(long, value_name = "N")]
+    pub columns: Option<u32>,
+    /// Show every cloth after so many steps [default: what the figure says, or the end]
+    #[arg(long, value_name = "N")]
+    pub steps: Option<u64>,
+    /// Pixels along one side of a cell [default: what figure and scenario say]
+    #[arg(long, value_name = "K")]
+    pub scale: Option<u32>,
+    /// Replace the picture that is already there
+    #[arg(long)]
+    pub force: bool,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub quiet: bool,
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use super::{BAD_INPUT, complain, print};
 use dyelapse::memory::{self, Use};
 use dyelapse::record::Plan;
-use dyelapse::scenario::Experiment;
+use dyelapse::scenario::Loaded;
 
 pub fn run(scenarios: &[String]) -> ExitCode {
     let mut good = String::new();
@@ -31,7 +31,15 @@ pub fn run(scenarios: &[String]) -> ExitCode {
 }
 
 fn check(name: &str) -> Result<String, String> {
-    let experiment = Experiment::load(name).map_err(|why| why.to_string())?;
+    let experiment = match Loaded::load(name).map_err(|why| why.to_string())? {
+        Loaded::Scenario(experiment) => experiment,
+        Loaded::Figure(figure) => {
+            let (panels, cloths) = (figure.panels.len(), figure.experiments.len());
+            return Ok(format!(
+                "right; a figure of {panels} panels, {cloths} cloths"
+            ));
+        }
+    };
     let scenario = &experiment.scenario;
     let plan = Plan::new(scenario, None, None).map_err(|why| format!("{name}: {why}"))?;
     let (nx, ny) = scenario.cloth.cells();

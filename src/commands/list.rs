@@ -1,41 +1,47 @@
 //! `dyelapse list`.
 
+use std::error::Error;
 use std::fmt::Write;
 use std::process::ExitCode;
 
 use super::{FAILED, complain, print};
 use dyelapse::draft::{self, Draft};
-use dyelapse::scenario::{Experiment, bundled_names};
+use dyelapse::scenario::{Experiment, Figure, bundled_names, figure_names};
 
 pub fn run() -> ExitCode {
-    let names = bundled_names();
-    let drafts = draft::bundled_names();
-    let all = names.iter().chain(&drafts);
-    let widest = all.map(|name| name.len()).max().unwrap_or(0);
-    let mut list = String::new();
-    for name in names {
-        match Experiment::load(name) {
-            Ok(experiment) => {
-                let title = &experiment.scenario.title;
-                let _ = writeln!(list, "{name:widest$}  {title}");
-            }
-            Err(why) => {
-                complain(&why);
-                return ExitCode::from(FAILED);
-            }
-        }
-    }
-    let _ = writeln!(list, "\ndrafts for `dyelapse wif`:");
+    match list() {
+        let _ = writeln!(list, "\nDrafts, for `dyelapse wif`:");
     for name in drafts {
-        match Draft::load(name) {
-            Ok(reading) => {
-                let _ = writeln!(list, "{name:widest$}  {}", reading.draft.title());
-            }
-            Err(why) => {
-                complain(&why);
-                return ExitCode::from(FAILED);
-            }
+        let title = Draft::load(name)?.draft.title().to_owned();
+        let _ = writeln!(list, "{name:widest$}  {title}");
+    }
+    Ok(list) => print(list.as_bytes()),
+        Err(why) => {
+            complain(&why);
+            ExitCode::from(FAILED)
         }
     }
-    print(list.as_bytes())
+}
+
+fn list() -> Result<String, Box<dyn Error>> {
+    let (scenarios, figures) = (bundled_names(), figure_names());
+    let drafts = draft::bundled_names();
+    let names = scenarios.iter().chain(&figures).chain(&drafts);
+    let widest = names.map(|name| name.len()).max().unwrap_or(0);
+    let mut list = String::new();
+    for name in scenarios {
+        let title = Experiment::load(name)?.scenario.title;
+        let _ = writeln!(list, "{name:widest$}  {title}");
+    }
+    let _ = writeln!(list, "\nFigures, for `dyelapse sheet`:");
+    for name in figures {
+        let title = Figure::of(&[name])?.title;
+        let _ = writeln!(list, "{name:widest$}  {title}");
+    }
+    let _ = writeln!(list, "\nDrafts, for `dyelapse wif`:");
+    for name in drafts {
+        let title = Draft::load(name)?.draft.title().to_owned();
+        let _ = writeln!(list, "{name:widest$}  {title}");
+    }
+    Ok(list)
 }

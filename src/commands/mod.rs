@@ -4,6 +4,7 @@ mod check;
 mod list;
 mod progress;
 mod record;
+mod sheet;
 mod wif;
 
 use std::fmt::Display;
@@ -25,6 +26,7 @@ const INTERRUPTED: u8 = 130;
 pub fn run(cli: Cli) -> ExitCode {
     match cli.command {
         Command::Record(arguments) => record::run(&arguments),
+        Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Check { scenarios } => check::run(&scenarios),
         Command::List => list::run(),
         Command::Wif(arguments) => wif::run(&arguments),

@@ -64,6 +64,18 @@ pub enum RecordError {
     /// The folder is a file.
     #[error("{} is a file, not a folder", .0.display())]
     NotAFolder(PathBuf),
+    /// The file of a picture is a folder.
+    #[error("{} is a folder, not a file", .0.display())]
+    IsAFolder(PathBuf),
+    /// The file of a picture has an ending that says something else.
+    #[error("--out: pictures are written as .png or .jpg, but this is {}", .0.display())]
+    NotAPicture(PathBuf),
+    /// The file of a picture is there already.
+    #[error(
+        "{} is there already: choose another name with --out, or give --force to replace it",
+        .0.display()
+    )]
+    Exists(PathBuf),
     /// The folder cannot be made or looked into.
     #[error("cannot use the folder {}: {why}", .path.display())]
     Folder {

@@ -139,29 +139,38 @@ impl Folder {
         name: &str,
         fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), RecordError> {
-        let path = self.file(name);
-        let unfinished = unfinished(&path);
-        let beside = path.parent().map_or(Ok(()), fs::create_dir_all);
-        let written = beside
-            .and_then(|()| File::create(&unfinished))
-            .and_then(|file| {
-                let mut file = BufWriter::with_capacity(1 << 18, file);
-                fill(&mut file)?;
-                file.flush()?;
-                drop(file);
-                fs::rename(&unfinished, &path)
-            });
-        written.map_err(|why| {
-            // Best effort: what matters is the first error.
-            let _ = fs::remove_file(&unfinished);
-            RecordError::Write { path, why }
-        })
+        write_whole(&self.file(name), fill)
     }
 
     /// Writes a file of text.
     pub(super) fn write_text(&self, name: &str, text: &str) -> Result<(), RecordError> {
         self.write(name, |file| file.write_all(text.as_bytes()))
     }
+}
+
+/// Writes a file, and the folders that lead to it: under another name first, and under its own when
+/// it is whole.
+pub(super) fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), RecordError> {
+    let unfinished = unfinished(path);
+    let beside = path.parent().map_or(Ok(()), fs::create_dir_all);
+    let written = beside
+        .and_then(|()| File::create(&unfinished))
+        .and_then(|file| {
+            let mut file = BufWriter::with_capacity(1 << 18, file);
+            fill(&mut file)?;
+            file.flush()?;
+            drop(file);
+            fs::rename(&unfinished, path)
+        });
+    written.map_err(|why| {
+        // Best effort: what matters is the first error.
+        let _ = fs::remove_file(&unfinished);
+        let path = path.into();
+        RecordError::Write { path, why }
+    })
 }
 
 /// The name of a file while it is being written.

@@ -1,10 +1,12 @@
 //! Recording: frames of the cloth at chosen moments, and everything needed to use them later.
 //!
 //! A recording is a folder: frames, a contact sheet, a manifest, the ledger, the scenario itself,
-//! and on request the fields behind the pictures and a film.
+//! and on request the fields behind the pictures and a film. A figure is one picture of several
+//! cloths.
 
 mod error;
 mod fields;
+mod figure;
 mod folder;
 mod manifest;
 mod maps;
@@ -17,6 +19,7 @@ mod writer;
 use std::path::{Path, PathBuf};
 
 pub use error::RecordError;
+pub use figure::{PictureFile, draw_figure, draw_panels};
 pub use manifest::{Frame, Manifest};
 pub use plan::{Plan, Stop};
 pub use recorder::{RecordPlugin, Recorder};

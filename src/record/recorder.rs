@@ -10,7 +10,7 @@ use super::fields::{self, State};
 use super::folder::{Folder, below, frame_name, state_name};
 use super::manifest::{self, Frame, MANIFEST, Manifest};
 use super::plan::Stop;
-use super::sheet::Sheet;
+use super::sheet::{Sheet, moment};
 use super::writer::{self, Job, Writer};
 use crate::adsorption::BoundDye;
 use crate::cloth::Cloth;
@@ -166,7 +166,7 @@ fn keep(
     // 3 · 0.1 h is 0.3 h and not 0.30000000000000004 h.
     let hours = rounded(clock.hours(), 12);
     if stop.sheet {
-        recorder.sheet.add(&picture, clock.step, hours);
+        recorder.sheet.add(&picture, moment(clock.step, hours));
     }
     let Some(frame) = stop.frame else {
         return;

@@ -13,8 +13,8 @@ use super::locate::{self, locate};
 /// Why a scenario cannot be run.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
-    /// Neither a file nor a bundled scenario has this name.
-    #[error("there is no file and no bundled scenario named `{name}`{}\n`dyelapse list` shows the bundled scenarios", did_you_mean(.nearest.as_deref()))]
+    /// Neither a file nor anything bundled has this name.
+    #[error("there is no file and nothing bundled named `{name}`{}\n`dyelapse list` shows what is bundled", did_you_mean(.nearest.as_deref()))]
     Unknown {
         /// What was asked for.
         name: String,
@@ -277,7 +277,7 @@ fn describe(code: &ron::Error) -> String {
     }
 }
 
-fn did_you_mean(nearest: Option<&str>) -> String {
+pub(super) fn did_you_mean(nearest: Option<&str>) -> String {
     nearest.map_or(String::new(), |name| format!("; did you mean `{name}`?"))
 }
 

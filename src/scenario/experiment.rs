@@ -46,9 +46,10 @@ impl Experiment {
     /// A [`ScenarioError`] that names the place: file, line and column, field, or picture.
     pub fn load(name_or_path: &str) -> Result<Self, ScenarioError> {
         let path = Path::new(name_or_path);
-        let scenario = bundled().find(|scenario| scenario.name == name_or_path);
-        if let (Some(scenario), false) = (scenario, path.is_file()) {
-            return Experiment::parse(scenario.name, Origin::Bundled, scenario.text.to_owned());
+        if !path.is_file()
+            && let Some(experiment) = Experiment::bundled(name_or_path)
+        {
+            return experiment;
         }
         let looks_like_path = path.components().count() > 1 || path.extension().is_some();
         if !path.exists() && !looks_like_path {
@@ -62,6 +63,16 @@ impl Experiment {
             why,
         })?;
         Experiment::parse(name_or_path, Origin::File(path.into()), text)
+    }
+
+    /// The bundled scenario of a name; none if there is none.
+    pub(super) fn bundled(name: &str) -> Option<Result<Self, ScenarioError>> {
+        let found = bundled().find(|scenario| scenario.name == name)?;
+        Some(Experiment::parse(
+            found.name,
+            Origin::Bundled,
+            found.text.to_owned(),
+        ))
     }
 
     /// Makes an experiment of a scenario that a program has put together.
@@ -120,7 +131,8 @@ impl Experiment {
     }
 }
 
-fn read(path: &Path) -> Result<String, String> {
+/// Reads the text of a scenario or a figure.
+pub(super) fn read(path: &Path) -> Result<String, String> {
     let size = fs::metadata(path).map_err(|why| why.to_string())?;
     if size.is_dir() {
         return Err("it is a folder".into());

@@ -1,10 +1,11 @@
-//! The scenarios that come with the program, so that they run from any folder.
+//! The scenarios and figures that come with the program, so that they run from any folder.
 
 use include_dir::{Dir, include_dir};
 
 static SCENARIOS: Dir = include_dir!("$CARGO_MANIFEST_DIR/assets/scenarios");
+static FIGURES: Dir = include_dir!("$CARGO_MANIFEST_DIR/assets/figures");
 
-/// A scenario that comes with the program.
+/// A scenario or figure that comes with the program.
 #[derive(Debug, Clone, Copy)]
 pub struct Bundled {
     /// Its name, such as `seikaiha`.
@@ -15,7 +16,16 @@ pub struct Bundled {
 
 /// All bundled scenarios, by name.
 pub fn bundled() -> impl Iterator<Item = Bundled> {
-    SCENARIOS.files().filter_map(|file| {
+    texts(&SCENARIOS)
+}
+
+/// All bundled figures, by name.
+pub fn bundled_figures() -> impl Iterator<Item = Bundled> {
+    texts(&FIGURES)
+}
+
+fn texts(folder: &'static Dir) -> impl Iterator<Item = Bundled> {
+    folder.files().filter_map(|file| {
         let path = file.path();
         let name = path.file_stem()?.to_str()?;
         let is_ron = path.extension().is_some_and(|ext| ext == "ron");
@@ -33,7 +43,16 @@ pub fn file(path: &str) -> Option<&'static [u8]> {
 
 /// The names of all bundled scenarios, sorted.
 pub fn names() -> Vec<&'static str> {
-    let mut names: Vec<_> = bundled().map(|scenario| scenario.name).collect();
+    sorted(bundled())
+}
+
+/// The names of all bundled figures, sorted.
+pub fn figure_names() -> Vec<&'static str> {
+    sorted(bundled_figures())
+}
+
+fn sorted(texts: impl Iterator<Item = Bundled>) -> Vec<&'static str> {
+    let mut names: Vec<_> = texts.map(|text| text.name).collect();
     names.sort_unstable();
     names
 }

@@ -14,6 +14,8 @@ mod shade;
 mod taps;
 mod yarn;
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use rayon::prelude::*;
 
@@ -26,7 +28,7 @@ use taps::Tap;
 use crate::adsorption::BoundDye;
 use crate::cloth::{Cloth, Layer, Yarns};
 use crate::diffusion::FreeDye;
-use crate::scenario::{Images, Photo, Scenario, Show, Side, TextureLook};
+use crate::scenario::{Experiment, Images, LookSpec, Photo, Scenario, Show, Side, TextureLook};
 use crate::schedule::{DyeFrame, FrameSet, Prepare, PrepareSet, TheExperiment};
 
 /// Pictures of the cloth.
@@ -288,6 +290,19 @@ pub fn darkest_at(scenario: &Scenario) -> f64 {
         (Show::FreeAndBound, None) => porosity,
         (Show::FreeAndBound, Some(_)) => 1.0,
     }
+}
+
+/// Draws the cloth of a prepared world in another way from now on. The dye is not touched.
+pub fn change_look(world: &mut World, look: LookSpec) {
+    let mut experiment = Experiment::clone(&world.resource::<TheExperiment>().0);
+    experiment.scenario.look = look;
+    let scale = world.get_resource::<Scale>().map(|scale| scale.0);
+    let scale = scale.unwrap_or(experiment.scenario.look.pixels_per_cell) as usize;
+    let cloth = world.resource::<Cloth>();
+    let side = experiment.scenario.look.side;
+    let texture = Texture::new(cloth, &experiment.scenario, &experiment.images, scale, side);
+    world.insert_resource(texture);
+    world.insert_resource(TheExperiment(Arc::new(experiment)));
 }
 
 fn prepare(
