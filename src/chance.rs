@@ -28,6 +28,10 @@ pub enum Purpose {
     WarpLook = 7,
     /// Look of each weft yarn.
     WeftLook = 8,
+    /// Where wax cracks, and how.
+    Crackle = 40,
+    /// Where waxed cloth was crumpled.
+    Crumple = 41,
 }
 
 impl Chance {

@@ -36,6 +36,7 @@
 //! **B** batik by diffusion (2016). `docs/model.md` has the formulas and what was chosen.
 
 pub mod adsorption;
+pub mod batik;
 pub mod chance;
 pub mod cloth;
 pub mod diffusion;

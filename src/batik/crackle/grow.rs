@@ -1,0 +1,384 @@
+//! The growth of cracks, one after the other.
+
+use super::field::{Field, Nearest, ahead, dot, unit};
+use super::{Crack, CrackleSpec, End, Network, Point};
+use crate::chance::{Chance, Purpose, Sequence};
+use crate::pattern::{Raster, clouds};
+
+/// Cells from one point of a crack to the next.
+const STEP: f32 = 1.0;
+/// A crack that comes as near as this to another one, or to an edge, is there.
+const THERE: f32 = 0.8;
+/// Places that are looked at before a crack begins at the one under most tension.
+const CANDIDATES: usize = 4;
+/// The least tension that breaks wax: distance to what is open over the width of a mesh there.
+const BREAKS: f32 = 0.14;
+/// So many places in a row where nothing breaks: the wax holds.
+const GIVE_UP: usize = 400;
+/// The share of later cracks that run out in whole wax.
+const TIPS: f64 = 0.12;
+/// The share of folds with another one close beside.
+const COMPANIONS: f64 = 0.4;
+/// The most that a crack turns for what is around it, radians.
+const MOST_TURN: f32 = 1.3;
+
+/// Breaks the wax.
+pub(super) fn network(
+    drawing: &Raster,
+    spec: &CrackleSpec,
+    crumpled: Option<&Raster>,
+    chance: Chance,
+) -> Network {
+    let mut network = Network::default();
+    if drawing.nx == 0 || drawing.ny == 0 || spec.density <= 0.0 {
+        return network;
+    }
+    let field = Field::new(drawing);
+    let most = spec.density * field.waxed() as f64;
+    let mut growth = Growth {
+        field,
+        spec,
+        chance: chance.sequence(Purpose::Crackle),
+        crumple: Crumple::new(spec, crumpled, chance),
+        mesh: (2.0 / spec.density) as f32,
+    };
+    let mut grown = 0.0;
+    let mut in_vain = 0;
+    while grown < most && in_vain < GIVE_UP {
+        let Some(start) = growth.place_to_break() else {
+            in_vain += 1;
+            continue;
+        };
+        let pieces = if grown < spec.folds * most {
+            growth.folds(start)
+        } else {
+            vec![growth.crack(start, &network)]
+        };
+        let before = grown;
+        for piece in pieces.into_iter().filter(|piece| piece.line.len() > 1) {
+            growth.field.add(network.cracks.len(), &piece.line);
+            grown += piece.length();
+            network.cracks.push(piece);
+        }
+        in_vain = if grown > before { 0 } else { in_vain + 1 };
+    }
+    network
+}
+
+/// How much the cloth was crumpled, place by place: tension is as many times as great, 1 on the
+/// whole.
+struct Crumple<'a> {
+    map: Option<&'a Raster>,
+    clouds: Box<dyn Fn(f64, f64) -> f32 + Sync>,
+    size: f64,
+    strength: f32,
+}
+
+impl<'a> Crumple<'a> {
+    fn new(spec: &CrackleSpec, map: Option<&'a Raster>, chance: Chance) -> Self {
+        Crumple {
+            map,
+            clouds: Box::new(clouds(chance.0, Purpose::Crumple as u32, 2)),
+            size: spec.crumple_size.max(1.0),
+            strength: spec.crumple as f32,
+        }
+    }
+
+    fn at(&self, at: Point) -> f32 {
+        let much = match self.map {
+            Some(map) => {
+                let (x, y) = (at[0] as usize, at[1] as usize);
+                map.at(y.min(map.ny - 1), x.min(map.nx - 1))
+            }
+            None => (self.clouds)(f64::from(at[0]) / self.size, f64::from(at[1]) / self.size),
+        };
+        // Clouds are mostly near a half: spread them out.
+        let spread = ((much - 0.5) * 2.6).clamp(-1.0, 1.0);
+        1.0 + self.strength * spread * if spread > 0.0 { 1.5 } else { 0.9 }
+    }
+}
+
+struct Growth<'a> {
+    field: Field,
+    spec: &'a CrackleSpec,
+    chance: Sequence,
+    crumple: Crumple<'a>,
+    /// Cells across a mesh of cracks.
+    mesh: f32,
+}
+
+/// How a crack finds its way.
+#[derive(Debug, Clone, Copy)]
+struct Course {
+    at: Point,
+    /// Unit vector.
+    heading: Point,
+    /// Radians a cell, straying.
+    bend: f32,
+    /// Radians that it may still turn for what is around it.
+    turns_left: f32,
+}
+
+impl Course {
+    fn new(at: Point, heading: Point) -> Self {
+        Course {
+            at,
+            heading,
+            bend: 0.0,
+            turns_left: MOST_TURN,
+        }
+    }
+}
+
+impl Growth<'_> {
+    fn between(&mut self, least: f64, most: f64) -> f32 {
+        self.chance.between((least, most)) as f32
+    }
+
+    /// A number of about the standard normal distribution.
+    fn normal(&mut self) -> f32 {
+        // Three of U(−1, 1) have variance 1.
+        (0..3).map(|_| self.between(-1.0, 1.0)).sum()
+    }
+
+    /// The place under most tension among a few of chance.
+    fn place_to_break(&mut self) -> Option<Point> {
+        let (nx, ny) = (self.field.nx as f64, self.field.ny as f64);
+        let mut best = None;
+        let mut most = BREAKS;
+        for _ in 0..CANDIDATES {
+            let at = [self.between(0.0, nx), self.between(0.0, ny)];
+            let distance = self.field.distance(at);
+            let tension = distance / self.mesh * self.crumple.at(at);
+            if distance > 1.5 && tension > most {
+                most = tension;
+                best = Some(at);
+            }
+        }
+        best
+    }
+
+    /// A fold, and now and then a finer one close beside it.
+    fn folds(&mut self, start: Point) -> Vec<Crack> {
+        let heading = self.fold_heading();
+        let mut cracks = self.fold(start, heading, 0);
+        if self.chance.unit() < COMPANIONS {
+            let aside = [-heading[1], heading[0]];
+            let beside = ahead(start, aside, self.between(0.06, 0.3) * self.mesh);
+            if self.field.holds(beside) && self.field.distance(beside) > 0.0 {
+                let heading = turned(heading, 0.06 * self.normal());
+                cracks.extend(self.fold(beside, heading, 1));
+            }
+        }
+        cracks
+    }
+
+    /// A long crack through everything, in pieces of wax.
+    fn fold(&mut self, start: Point, heading: Point, generation: u32) -> Vec<Crack> {
+        let width = self.width(generation);
+        let depth = self.depth(generation);
+        let mut pieces = Vec::new();
+        let mut first = self.run_fold(start, heading);
+        let mut second = self.run_fold(start, [-heading[0], -heading[1]]);
+        // Both begin in the same wax: their first pieces are one.
+        let (mut middle, middle_end) = first.remove(0);
+        let (other, other_end) = second.remove(0);
+        middle.reverse();
+        middle.extend(other.into_iter().skip(1));
+        pieces.push((middle, [middle_end, other_end]));
+        for (line, end) in first.into_iter().chain(second) {
+            pieces.push((line, [End::Open, end]));
+        }
+        pieces
+            .into_iter()
+            .map(|(line, ends)| Crack {
+                line,
+                ends,
+                generation,
+                width,
+                depth,
+            })
+            .collect()
+    }
+
+    fn fold_heading(&mut self) -> Point {
+        let angle = match self.spec.direction {
+            Some(degrees) => {
+                // Folded cloth is often folded again across.
+                let across = if self.chance.unit() < 0.15 { 90.0 } else { 0.0 };
+                degrees as f32 + across + 14.0 * self.normal()
+            }
+            None => self.between(0.0, 360.0),
+        };
+        let angle = angle.to_radians();
+        [libm::cosf(angle), libm::sinf(angle)]
+    }
+
+    /// One way of a fold: the pieces of wax it breaks, each with where it ends.
+    fn run_fold(&mut self, start: Point, heading: Point) -> Vec<(Vec<Point>, End)> {
+        let mut pieces = Vec::new();
+        let mut line = vec![start];
+        let mut course = Course::new(start, heading);
+        // Crossing what was met: not met again until left behind.
+        let mut crossing = false;
+        let mut open = 0.0;
+        let longest = 2 * (self.field.nx + self.field.ny);
+        for _ in 0..longest {
+            self.stray(&mut course, 0.35);
+            course.at = ahead(course.at, course.heading, STEP);
+            if !self.field.holds(course.at) {
+                if !line.is_empty() {
+                    line.push(course.at);
+                    pieces.push((line, End::Border));
+                    return pieces;
+                }
+                break;
+            }
+            let distance = self.field.distance(course.at);
+            let nearest = self.field.nearest(course.at);
+            if line.is_empty() {
+                // In the open, on the way to more wax.
+                open += STEP;
+                if distance > 0.0 {
+                    line.push(ahead(course.at, course.heading, -STEP));
+                    line.push(course.at);
+                    open = 0.0;
+                } else if open > 2.0 * self.mesh {
+                    break;
+                }
+                continue;
+            }
+            line.push(course.at);
+            match nearest {
+                Nearest::Open if distance <= 0.0 => {
+                    pieces.push((std::mem::take(&mut line), End::Open));
+                }
+                Nearest::Crack(crack, at) if distance < THERE && !crossing => {
+                    if self.chance.unit() < 0.4 {
+                        line.push(at);
+                        pieces.push((line, End::Crack(crack)));
+                        return pieces;
+                    }
+                    crossing = true;
+                }
+                _ => crossing &= distance < 4.0 * THERE,
+            }
+        }
+        if !line.is_empty() {
+            pieces.push((line, End::Tip));
+        }
+        pieces
+    }
+
+    /// A later crack: across the mesh that it begins in.
+    fn crack(&mut self, start: Point, so_far: &Network) -> Crack {
+        let uphill = self.field.uphill(start);
+        let heading = if uphill == [0.0, 0.0] {
+            self.fold_heading()
+        } else {
+            turned(uphill, 0.35 * self.normal())
+        };
+        let runs_out = self.chance.unit() < TIPS;
+        let (first, first_end) = self.run(start, [-heading[0], -heading[1]], f32::INFINITY);
+        let reach = if runs_out {
+            self.between(0.2, 0.7) * self.mesh
+        } else {
+            f32::INFINITY
+        };
+        let (second, second_end) = self.run(start, heading, reach);
+        let mut line = first;
+        line.reverse();
+        line.extend(second.into_iter().skip(1));
+        let ends = [first_end, second_end];
+        let of = |end: End| match end {
+            End::Crack(crack) => so_far.cracks[crack].generation,
+            _ => 0,
+        };
+        let generation = 1 + of(first_end).max(of(second_end));
+        let (width, depth) = (self.width(generation), self.depth(generation));
+        Crack {
+            line,
+            ends,
+            generation,
+            width,
+            depth,
+        }
+    }
+
+    /// One way of a crack, for `reach` cells at most.
+    fn run(&mut self, start: Point, heading: Point, reach: f32) -> (Vec<Point>, End) {
+        let mut line = vec![start];
+        let mut course = Course::new(start, heading);
+        let longest = reach.min((2 * (self.field.nx + self.field.ny)) as f32);
+        let mut run = 0.0;
+        while run < longest {
+            let distance = self.field.distance(course.at);
+            self.steer(&mut course, distance);
+            self.stray(&mut course, 1.0);
+            let step = STEP.min(distance.max(0.5));
+            course.at = ahead(course.at, course.heading, step);
+            run += step;
+            line.push(course.at);
+            if !self.field.holds(course.at) {
+                return (line, End::Border);
+            }
+            let distance = self.field.distance(course.at);
+            match self.field.nearest(course.at) {
+                Nearest::Crack(crack, at) if distance < THERE => {
+                    line.push(at);
+                    return (line, End::Crack(crack));
+                }
+                Nearest::Open if distance <= 0.0 => return (line, End::Open),
+                _ => {}
+            }
+        }
+        (line, End::Tip)
+    }
+
+    /// Turns towards where the distance is greatest while it grows, and across to what is near when
+    /// it falls: the nearer, the more, so that it is met at a right angle.
+    fn steer(&self, course: &mut Course, distance: f32) {
+        let uphill = self.field.uphill(course.at);
+        let rising = dot(course.heading, uphill);
+        let (towards, turn) = if rising >= 0.0 {
+            (uphill, 0.2 / (distance + 6.0))
+        } else {
+            ([-uphill[0], -uphill[1]], 0.9 / (distance + 2.0))
+        };
+        let aside = [-course.heading[1], course.heading[0]];
+        let angle = dot(aside, towards) * turn * STEP;
+        let angle = angle.clamp(-course.turns_left, course.turns_left);
+        course.turns_left -= angle.abs();
+        course.heading = turned(course.heading, angle.clamp(-0.15, 0.15));
+    }
+
+    /// Chance on the way: slow bends, and now and then a kink.
+    fn stray(&mut self, course: &mut Course, share: f32) {
+        let jitter = self.spec.jitter as f32 * share;
+        if jitter <= 0.0 {
+            return;
+        }
+        course.bend = 0.9 * course.bend + 0.012 * jitter * self.normal();
+        let mut turn = course.bend * STEP;
+        if self.between(0.0, 1.0) < 0.06 * STEP {
+            turn += 0.6 * jitter * self.normal();
+        }
+        course.heading = turned(course.heading, turn);
+    }
+
+    fn width(&mut self, generation: u32) -> f32 {
+        let thinner = (0..generation.min(12)).fold(1.0, |w, _| w * self.spec.thinning);
+        (self.spec.width * thinner) as f32 * self.between(0.65, 1.35)
+    }
+
+    fn depth(&mut self, generation: u32) -> f32 {
+        let least = 0.75 - 0.08 * f64::from(generation.min(6));
+        self.between(least, 1.0)
+    }
+}
+
+/// A unit vector turned by a small angle, radians.
+fn turned(a: Point, angle: f32) -> Point {
+    // tan instead of sin and cos: the same to first order, and the length is mended.
+    unit([a[0] - a[1] * angle, a[1] + a[0] * angle])
+}
