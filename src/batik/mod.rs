@@ -3,6 +3,7 @@
 pub mod crackle;
 pub mod crossings;
 pub mod distance;
+pub mod drawing;
 pub mod ellipse;
 pub mod mixing;
 mod noise;

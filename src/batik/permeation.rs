@@ -35,8 +35,8 @@ pub struct PermeationSpec {
 impl Default for PermeationSpec {
     fn default() -> Self {
         PermeationSpec {
-            reach: 6.0,
-            drawing: 0.6,
+            reach: 5.0,
+            drawing: 0.9,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use image::{ImageReader, Limits};
+use image::{DynamicImage, ImageReader, Limits};
 
 use super::check::{Checker, Problem};
 use crate::memory;
@@ -98,15 +98,20 @@ fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>,
     Ok(reader)
 }
 
-fn dimensions(path: &Path) -> Result<(usize, usize), String> {
+/// The width and height of a picture, from its beginning alone.
+pub(crate) fn dimensions(path: &Path) -> Result<(usize, usize), String> {
     let (width, height) = reader(path)?.into_dimensions().map_err(not_a_picture)?;
     Ok((width as usize, height as usize))
 }
 
+/// A picture as it is in its file.
+pub(crate) fn open(path: &Path) -> Result<DynamicImage, String> {
+    reader(path)?.decode().map_err(not_a_picture)
+}
+
 /// Brightness from 0 to 1; what is transparent counts as black, so that only what is drawn counts.
 fn decode(path: &Path) -> Result<Raster, String> {
-    let image = reader(path)?.decode().map_err(not_a_picture)?;
-    let image = image.to_luma_alpha32f();
+    let image = open(path)?.to_luma_alpha32f();
     Ok(Raster {
         nx: image.width() as usize,
         ny: image.height() as usize,

@@ -8,7 +8,7 @@ mod chemistry;
 mod error;
 mod experiment;
 mod fabric;
-mod images;
+pub(crate) mod images;
 mod library;
 mod locate;
 mod look;

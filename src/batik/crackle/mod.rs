@@ -52,9 +52,9 @@ pub struct CrackleSpec {
 impl Default for CrackleSpec {
     fn default() -> Self {
         CrackleSpec {
-            density: 0.035,
-            width: 2.2,
-            thinning: 0.8,
+            density: 0.03,
+            width: 1.4,
+            thinning: 0.75,
             jitter: 0.5,
             folds: 0.3,
             direction: None,

@@ -37,8 +37,8 @@ impl Classes {
     };
 
     /// What the text of paper B says, that dye runs mainly along yarns: the two numbers of the table
-    /// exchanged, and twenty times as much across as that would give, without which no yarn ever
-    /// colours the next one.
+    /// exchanged, and twenty times as much across as that would give, without which hardly any yarn
+    /// would ever colour the next one.
     pub const PHYSICAL: Classes = Classes {
         along: 0.5,
         across: 0.02,
@@ -67,7 +67,7 @@ impl Default for ExchangeSpec {
     /// D₀ of paper B with the time step of `docs/batik.md`, and the physical reading of its table.
     fn default() -> Self {
         ExchangeSpec {
-            in_water: 1.93 * 40.0,
+            in_water: 1.93 * 80.0,
             classes: Classes::PHYSICAL,
             // Half way between the limits of paper B's 0.025r.
             gap_twist: 0.025 * 0.75,
@@ -93,11 +93,72 @@ pub struct Exchange {
     pub between: Vec<f32>,
 }
 
+/// What faces ask of a cell.
 #[derive(Clone, Copy)]
-struct Side {
-    layer: Layer,
-    y: usize,
-    x: usize,
+struct Cell {
+    /// P.
+    porosity: f32,
+    /// τ₁.
+    twist: f32,
+    fibre: bool,
+}
+
+/// How two neighbours lie.
+#[derive(Clone, Copy)]
+enum Way {
+    Along,
+    Across,
+    Between,
+}
+
+impl ExchangeSpec {
+    /// w of the face between two cells.
+    fn weight(&self, a: Cell, b: Cell, way: Way) -> f32 {
+        let sum = a.porosity + b.porosity;
+        if sum <= 0.0 {
+            return 0.0;
+        }
+        let mean = 2.0 * a.porosity * b.porosity / sum;
+        let classes = &self.classes;
+        let class = match (a.fibre, b.fibre) {
+            (false, false) => classes.gap_to_gap,
+            (true, true) => match way {
+                Way::Along => classes.along,
+                Way::Across => classes.across,
+                Way::Between => classes.between_layers,
+            },
+            _ => classes.yarn_to_gap,
+        };
+        (self.in_water * class) as f32 * mean * a.twist.min(b.twist)
+    }
+
+    /// The cells of one layer.
+    fn cells(&self, cloth: &Cloth, layer: Layer, crossings: &Crossings, seed: u64) -> Vec<Cell> {
+        let numbers = Crossings::numbers(match layer {
+            Layer::Weft => &crossings.rows,
+            Layer::Warp => &crossings.columns,
+        });
+        let seed = fold_seed(seed, 0xe0 + layer as u32);
+        let (uneven, grain) = (self.uneven as f32, self.grain.max(1.0) as f32);
+        let cell = |y: usize, x: usize| {
+            let (across, place) = match layer {
+                Layer::Weft => (y, x),
+                Layer::Warp => (x, y),
+            };
+            let thick = along(seed, numbers[across], place as f32 / grain);
+            let yarn = cloth.yarn(layer, y, x);
+            Cell {
+                porosity: cloth.porosity(layer, y, x) as f32 * (1.0 - uneven * 0.5 * (1.0 + thick)),
+                twist: yarn.map_or(self.gap_twist, |yarn| yarn.twist) as f32,
+                fibre: yarn.is_some(),
+            }
+        };
+        let nx = cloth.grid.nx;
+        (0..cloth.grid.layer_len())
+            .into_par_iter()
+            .map(|i| cell(i / nx, i % nx))
+            .collect()
+    }
 }
 
 impl Exchange {
@@ -105,82 +166,48 @@ impl Exchange {
     pub fn of(cloth: &Cloth, spec: &ExchangeSpec, seed: u64) -> Self {
         let (nx, ny) = (cloth.grid.nx, cloth.grid.ny);
         let crossings = Crossings::of(cloth);
-        let numbers = [
-            Crossings::numbers(&crossings.rows),
-            Crossings::numbers(&crossings.columns),
-        ];
-        let seeds = [0xe0, 0xe1].map(|channel| fold_seed(seed, channel));
-        let (uneven, grain) = (spec.uneven, spec.grain.max(1.0) as f32);
-        let porosity = |s: Side| {
-            let (across, place) = match s.layer {
-                Layer::Weft => (s.y, s.x),
-                Layer::Warp => (s.x, s.y),
-            };
-            let number = numbers[s.layer as usize][across];
-            let thick = along(seeds[s.layer as usize], number, place as f32 / grain);
-            let share = 1.0 - uneven * 0.5 * (1.0 + f64::from(thick));
-            cloth.porosity(s.layer, s.y, s.x) * share
-        };
-        let weight = |a: Side, b: Side| {
-            let (pa, pb) = (porosity(a), porosity(b));
-            let mean = if pa + pb > 0.0 {
-                2.0 * pa * pb / (pa + pb)
+        let cells = Layer::BOTH.map(|layer| spec.cells(cloth, layer, &crossings, seed));
+        let len = nx * ny;
+        let right = |layer: Layer| {
+            let cells = &cells[layer as usize];
+            let way = if layer == Layer::Weft {
+                Way::Along
             } else {
-                0.0
+                Way::Across
             };
-            let yarn = |s: Side| cloth.yarn(s.layer, s.y, s.x);
-            let twist = |s: Side| yarn(s).map_or(spec.gap_twist, |yarn| yarn.twist);
-            let along = match a.layer {
-                Layer::Weft => a.x != b.x,
-                Layer::Warp => a.y != b.y,
-            };
-            let classes = &spec.classes;
-            let class = match (yarn(a).is_some(), yarn(b).is_some()) {
-                (false, false) => classes.gap_to_gap,
-                (true, false) | (false, true) => classes.yarn_to_gap,
-                _ if a.layer != b.layer => classes.between_layers,
-                _ if along => classes.along,
-                _ => classes.across,
-            };
-            (spec.in_water * mean * twist(a).min(twist(b)) * class) as f32
-        };
-        let field = |rule: &(dyn Fn(usize, usize) -> f32 + Sync)| {
-            let mut field = vec![0.0; nx * ny];
-            field
-                .par_chunks_mut(nx.max(1))
-                .enumerate()
-                .for_each(|(y, row)| {
-                    for (x, cell) in row.iter_mut().enumerate() {
-                        *cell = rule(y, x);
-                    }
-                });
-            field
-        };
-        let right = |layer| {
-            field(&move |y, x| {
-                if x + 1 == nx {
-                    return 0.0;
+            let face = |i: usize| {
+                let last = (i + 1).is_multiple_of(nx);
+                if last {
+                    0.0
+                } else {
+                    spec.weight(cells[i], cells[i + 1], way)
                 }
-                weight(Side { layer, y, x }, Side { layer, y, x: x + 1 })
-            })
+            };
+            (0..len).into_par_iter().map(face).collect()
         };
-        let down = |layer| {
-            field(&move |y, x| {
-                if y + 1 == ny {
-                    return 0.0;
-                }
-                weight(Side { layer, y, x }, Side { layer, y: y + 1, x })
-            })
+        let down = |layer: Layer| {
+            let cells = &cells[layer as usize];
+            let way = if layer == Layer::Warp {
+                Way::Along
+            } else {
+                Way::Across
+            };
+            let face = |i: usize| {
+                let below = cells.get(i + nx);
+                below.map_or(0.0, |below| spec.weight(cells[i], *below, way))
+            };
+            (0..len).into_par_iter().map(face).collect()
         };
+        let [weft, warp] = &cells;
         Exchange {
             nx,
             ny,
             right: Layer::BOTH.map(right),
             down: Layer::BOTH.map(down),
-            between: field(&|y, x| {
-                let [weft, warp] = Layer::BOTH.map(|layer| Side { layer, y, x });
-                weight(weft, warp)
-            }),
+            between: (0..len)
+                .into_par_iter()
+                .map(|i| spec.weight(weft[i], warp[i], Way::Between))
+                .collect(),
         }
     }
 

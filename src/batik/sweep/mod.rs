@@ -34,7 +34,7 @@ impl Default for BathSpec {
     fn default() -> Self {
         BathSpec {
             concentration: 1.0,
-            supply: 0.3,
+            supply: 0.5,
             binding: 0.1,
             most_bound: 0.5,
         }
