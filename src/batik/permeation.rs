@@ -35,7 +35,7 @@ pub struct PermeationSpec {
 impl Default for PermeationSpec {
     fn default() -> Self {
         PermeationSpec {
-            reach: 5.0,
+            reach: 3.0,
             drawing: 0.9,
         }
     }

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! T is what whole wax lets through, W its own colour and σ the share it scatters: beeswax is yellow,
-//! paraffin nearly white. In cracks t is small and the dye below shows. The slope of the surface
-//! catches light from the upper left.
+//! paraffin nearly white. In cracks t is small and the dye below shows. The surface is rounded
+//! towards its edges as melted wax is, and its slopes catch light from the upper left.
 
 use rayon::prelude::*;
 
@@ -39,12 +39,12 @@ impl Default for WaxLook {
     /// Beeswax with paraffin.
     fn default() -> Self {
         WaxLook {
-            lets_through: [0.97, 0.92, 0.76],
-            colour: [0.93, 0.83, 0.60],
-            scatters: 0.4,
-            shine: 0.16,
-            uneven: 0.35,
-            grain: 40.0,
+            lets_through: [0.97, 0.93, 0.82],
+            colour: [0.95, 0.89, 0.72],
+            scatters: 0.32,
+            shine: 0.55,
+            uneven: 0.45,
+            grain: 60.0,
         }
     }
 }
@@ -56,7 +56,12 @@ pub struct WaxLayer {
     ny: usize,
     /// t of every cell, 0 to 1.
     thickness: Vec<f32>,
+    /// The height of its surface, rounded.
+    surface: Raster,
 }
+
+/// How far edges are rounded: standard deviation, cells.
+const ROUND: f64 = 1.3;
 
 impl WaxLayer {
     /// The wax of a drawing with its cracks (0 waxed, 1 open).
@@ -78,11 +83,17 @@ impl WaxLayer {
                     }
                 }
             });
+        let surface = Raster {
+            nx,
+            ny: drawing.ny,
+            values: thickness.clone(),
+        };
         WaxLayer {
             look,
             nx,
             ny: drawing.ny,
             thickness,
+            surface: surface.blurred(ROUND),
         }
     }
 
@@ -99,7 +110,7 @@ impl WaxLayer {
                 return below;
             }
             let t = self.thickness[y * self.nx + x];
-            let shine = self.look.shine as f32 * self.slope(y, x);
+            let shine = self.look.shine as f32 * self.slope(y, x) * t.min(1.0);
             self.seen(below, t)
                 .map(|channel| (channel + shine).clamp(0.0, 1.0))
         })
@@ -117,7 +128,7 @@ impl WaxLayer {
     /// How much thicker the wax is below and to the right than above and to the left, −1 to 1: what
     /// faces the light and what turns away from it.
     fn slope(&self, y: usize, x: usize) -> f32 {
-        let t = |y: usize, x: usize| self.thickness[y * self.nx + x];
+        let t = |y: usize, x: usize| self.surface.at(y, x);
         let (left, right) = (x.saturating_sub(1), (x + 1).min(self.nx - 1));
         let (above, below) = (y.saturating_sub(1), (y + 1).min(self.ny - 1));
         0.5 * (t(y, right) - t(y, left) + t(below, x) - t(above, x))

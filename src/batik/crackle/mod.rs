@@ -17,6 +17,8 @@ mod draw;
 mod field;
 mod grow;
 mod network;
+#[cfg(test)]
+mod tests;
 
 pub use network::{Crack, End, Network};
 
@@ -52,7 +54,7 @@ pub struct CrackleSpec {
 impl Default for CrackleSpec {
     fn default() -> Self {
         CrackleSpec {
-            density: 0.03,
+            density: 0.025,
             width: 1.4,
             thinning: 0.75,
             jitter: 0.5,

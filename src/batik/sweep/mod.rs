@@ -12,6 +12,8 @@
 mod exchange;
 pub mod plain;
 mod rule;
+#[cfg(test)]
+mod tests;
 mod tiles;
 
 pub use exchange::{Classes, Exchange, ExchangeSpec};
