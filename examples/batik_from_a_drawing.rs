@@ -6,6 +6,7 @@
 //! drawing, PNG or JPEG; what is drawn is dyed. Without one a flower is drawn.
 
 use std::error::Error;
+use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -48,27 +49,29 @@ const CLOTH: &str = r#"(
 const COTTON: Rgb = [0.96, 0.945, 0.90];
 const INDIGO: Rgb = [0.09, 0.17, 0.36];
 
-/// A flower of two rings of petals: 1 where it is drawn.
+/// A flower of two rings of petals around a seed head: 1 where it is drawn, soft over one cell.
 fn flower() -> Raster {
+    let soft = |inside: f64| (inside + 0.5).clamp(0.0, 1.0);
     Raster::from_rule(SIDE, SIDE, |x, y| {
         let middle = SIDE as f64 / 2.0;
         let (dx, dy) = (x - middle, y - middle);
         let (radius, angle) = ((dx * dx + dy * dy).sqrt(), libm::atan2(dy, dx));
-        let ring = |reach: f64, petals: f64, turn: f64| {
-            let edge = reach * (0.72 + 0.28 * libm::cos(petals * angle + turn).abs());
-            // Petals with a line of wax around them, soft over one cell.
-            ((edge - radius).abs() > 5.0, edge)
+        // How far inside the edge of a ring of eight petals, in cells.
+        let petals = |reach: f64, turn: f64| {
+            let edge = reach * (0.7 + 0.3 * libm::cos(4.0 * angle + turn).abs());
+            edge - radius
         };
-        let (outer, outer_edge) = ring(400.0, 4.0, 0.0);
-        let (inner, inner_edge) = ring(230.0, 4.0, 1.57);
-        let drawn = match radius {
-            r if r < 30.0 => false,
-            r if r < 80.0 => (angle * 9.0 / 3.14).rem_euclid(1.0) > 0.2 || r < 60.0,
-            r if r < inner_edge + 5.0 => inner,
-            r if r < outer_edge => outer,
-            _ => false,
+        let (outer, inner) = (petals(420.0, 0.0), petals(250.0, FRAC_PI_2));
+        // A vein of wax along the middle of every outer petal.
+        let vein = radius * libm::sin(4.0 * angle).abs() / 4.0 - 4.0;
+        let vein = if (270.0..370.0).contains(&radius) {
+            soft(vein)
+        } else {
+            1.0
         };
-        if drawn { 1.0 } else { 0.0 }
+        let ring = soft(outer) * soft(-inner - 9.0) * vein + soft(inner) * soft(radius - 95.0);
+        let seeds = soft(82.0 - radius) * soft(18.0 * libm::cos(12.0 * angle) - radius + 62.0);
+        (ring + seeds).min(1.0) as f32
     })
 }
 
@@ -113,10 +116,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some(file) => Drawing::load(Path::new(&file), Ground::Detect)?,
         None => Drawing { drawn: flower() },
     };
-    let app = dyeing_app(Experiment::parse(CLOTH)?);
+    let app = dyeing_app(Experiment::from_scenario("batik", ron::from_str(CLOTH)?)?);
     let cloth = app.world().resource::<Cloth>();
 
-    let open = timed("the drawing becomes wax", || drawing.wax(SIDE, SIDE, Waxed::Ground));
+    let open = timed("the drawing becomes wax", || {
+        drawing.wax(SIDE, SIDE, Waxed::Ground)
+    });
     let crackle = timed("the wax cracks", || {
         Crackle::grow(&open, &CrackleSpec::default(), None, Chance(SEED))
     });
@@ -143,7 +148,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let spec = EllipseSpec::default();
         EllipseWeave::new(&crossings, |y, x| cloth.warp_up(y, x), spec, 1, SEED)
     });
-    let layer = timed("the wax as it is seen", || WaxLayer::new(&wax, WaxLook::default(), SEED));
+    let layer = timed("the wax as it is seen", || {
+        WaxLayer::new(&wax, WaxLook::default(), SEED)
+    });
     let mut done = 0;
     for scans in SCANS {
         timed(&format!("{} more scans", scans - done), || {

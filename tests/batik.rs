@@ -91,7 +91,11 @@ fn one_seed_is_one_cloth_and_another_seed_another() {
     let of = |seed| dyed(&drawing, seed, 4).1.dye();
     assert!(of(1) == of(1));
     let (one, other) = (of(1), of(2));
-    let apart = one.free.iter().zip(&other.free).filter(|(a, b)| (**a - **b).abs() > 0.3);
+    let apart = one
+        .free
+        .iter()
+        .zip(&other.free)
+        .filter(|(a, b)| (**a - **b).abs() > 0.3);
     assert!(apart.count() > 1000);
 }
 
@@ -107,7 +111,11 @@ fn sixteen_scans_never_truncate_and_their_ledger_balances() {
 #[test]
 fn dye_fades_outwards_from_a_crack() {
     // One straight crack down the middle of the wax, between yarns' columns and on them.
-    let drawing = Raster::from_rule(SIDE, SIDE, |x, _| if (x - 200.5).abs() < 1.0 { 1.0 } else { 0.0 });
+    let drawing = Raster::from_rule(
+        SIDE,
+        SIDE,
+        |x, _| if (x - 200.5).abs() < 1.0 { 1.0 } else { 0.0 },
+    );
     let p = permeation(&drawing, &PermeationSpec::default());
     let exchange = Exchange::of(&cloth(1), &ExchangeSpec::default(), 1);
     let mut bath = PixelDiffusing::new(&exchange, &p, &BathSpec::default(), &Dye::none(SIDE, SIDE));
@@ -123,8 +131,18 @@ fn dye_fades_outwards_from_a_crack() {
 #[test]
 fn dye_runs_farther_along_yarns_than_across_them() {
     // A row of open cells: warp yarns carry dye away from it, weft yarns do not.
-    let drawing = Raster::from_rule(SIDE, SIDE, |_, y| if (y - 200.5).abs() < 3.0 { 1.0 } else { 0.0 });
-    let p = permeation(&drawing, &PermeationSpec { reach: 0.0, drawing: 1.0 });
+    let drawing = Raster::from_rule(
+        SIDE,
+        SIDE,
+        |_, y| if (y - 200.5).abs() < 3.0 { 1.0 } else { 0.0 },
+    );
+    let p = permeation(
+        &drawing,
+        &PermeationSpec {
+            reach: 0.0,
+            drawing: 1.0,
+        },
+    );
     let woven = cloth(4);
     let exchange = Exchange::of(&woven, &ExchangeSpec::default(), 4);
     let mut bath = PixelDiffusing::new(&exchange, &p, &BathSpec::default(), &Dye::none(SIDE, SIDE));
@@ -133,7 +151,9 @@ fn dye_runs_farther_along_yarns_than_across_them() {
     let beside = |layer: Layer| {
         let cells = (206..220).flat_map(|y| (0..SIDE).map(move |x| (y, x)));
         let fibre = cells.filter(|(y, x)| woven.fibre(layer, *y, *x));
-        fibre.map(|(y, x)| f64::from(dye.free[woven.grid.index(layer, y, x)])).sum::<f64>()
+        fibre
+            .map(|(y, x)| f64::from(dye.free[woven.grid.index(layer, y, x)]))
+            .sum::<f64>()
     };
     assert!(beside(Layer::Warp) > 1.5 * beside(Layer::Weft));
 }
@@ -142,10 +162,10 @@ fn dye_runs_farther_along_yarns_than_across_them() {
 fn drawings_of_one_bit_are_read() {
     // A black square of 8×8 on white, 16×16 pixels, one bit each.
     const PNG: [u8; 81] = [
-        137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 16, 0, 0, 0, 16, 1, 0, 0,
-        0, 0, 55, 136, 194, 204, 0, 0, 0, 24, 73, 68, 65, 84, 120, 218, 99, 252, 207, 192, 196, 0, 69,
-        12, 31, 248, 225, 108, 100, 196, 136, 164, 6, 0, 95, 112, 3, 26, 19, 198, 209, 104, 0, 0, 0, 0,
-        73, 69, 78, 68, 174, 66, 96, 130,
+        137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 16, 0, 0, 0, 16, 1,
+        0, 0, 0, 0, 55, 136, 194, 204, 0, 0, 0, 24, 73, 68, 65, 84, 120, 218, 99, 252, 207, 192,
+        196, 0, 69, 12, 31, 248, 225, 108, 100, 196, 136, 164, 6, 0, 95, 112, 3, 26, 19, 198, 209,
+        104, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130,
     ];
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("square.png");
@@ -164,7 +184,9 @@ fn what_is_no_drawing_is_refused_by_name() {
     };
     let picture = |name: &str, width: u32, height: u32| {
         let file = folder.path().join(name);
-        image::GrayImage::new(width, height).save(&file).expect("a picture");
+        image::GrayImage::new(width, height)
+            .save(&file)
+            .expect("a picture");
         file
     };
     let load = |file: &Path| Drawing::load(file, Ground::Detect).expect_err("no drawing");
@@ -172,11 +194,20 @@ fn what_is_no_drawing_is_refused_by_name() {
     let mut huge = std::fs::read(picture("head.png", 16, 16)).expect("a picture");
     huge[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
     let cases = [
-        (folder.path().join("missing.png"), "missing.png: it cannot be read"),
+        (
+            folder.path().join("missing.png"),
+            "missing.png: it cannot be read",
+        ),
         (folder.path().to_path_buf(), "it is a folder"),
-        (file("words.png", b"these are words"), "words.png: it is not a whole PNG"),
+        (
+            file("words.png", b"these are words"),
+            "words.png: it is not a whole PNG",
+        ),
         (file("huge.png", &huge), "huge.png"),
-        (picture("tiny.png", 3, 20), "tiny.png has only 3×20 pixels; at least 8×8 are needed"),
+        (
+            picture("tiny.png", 3, 20),
+            "tiny.png has only 3×20 pixels; at least 8×8 are needed",
+        ),
         (picture("empty.png", 30, 20), "empty.png is empty"),
     ];
     for (file, expected) in cases {
@@ -184,5 +215,12 @@ fn what_is_no_drawing_is_refused_by_name() {
         assert!(said.contains(expected), "{said}");
     }
     let error = load(&folder.path().join("tiny.png"));
-    assert!(matches!(error, DrawingError::TooSmall { width: 3, height: 20, .. }));
+    assert!(matches!(
+        error,
+        DrawingError::TooSmall {
+            width: 3,
+            height: 20,
+            ..
+        }
+    ));
 }

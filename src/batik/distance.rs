@@ -62,7 +62,7 @@ mod tests {
     fn specks(nx: usize, ny: usize, one_in: u32) -> Raster {
         let mut raster = Raster::uniform(nx, ny, 0.0);
         for (i, value) in raster.values.iter_mut().enumerate() {
-            if noise::hash(1, i as u32, 0) % one_in == 0 {
+            if noise::hash(1, i as u32, 0).is_multiple_of(one_in) {
                 *value = 1.0;
             }
         }

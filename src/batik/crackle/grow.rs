@@ -1,12 +1,12 @@
 //! The growth of cracks, one after the other.
 
-use super::field::{Field, Nearest, ahead, dot, unit};
+use super::course::{Course, STEP, about_normal, between, turned};
+use super::crumple::Crumple;
+use super::field::{Field, Nearest, ahead};
 use super::{Crack, CrackleSpec, End, Network, Point};
 use crate::chance::{Chance, Purpose, Sequence};
-use crate::pattern::{Raster, clouds};
+use crate::pattern::Raster;
 
-/// Cells from one point of a crack to the next.
-const STEP: f32 = 1.0;
 /// A crack that comes as near as this to another one, or to an edge, is there.
 const THERE: f32 = 0.8;
 /// Places that are looked at before a crack begins at the one under most tension.
@@ -19,8 +19,6 @@ const GIVE_UP: usize = 400;
 const TIPS: f64 = 0.12;
 /// The share of folds with another one close beside.
 const COMPANIONS: f64 = 0.4;
-/// The most that a crack turns for what is around it, radians.
-const MOST_TURN: f32 = 1.3;
 
 /// Breaks the wax.
 pub(super) fn network(
@@ -65,39 +63,6 @@ pub(super) fn network(
     network
 }
 
-/// How much the cloth was crumpled, place by place: tension is as many times as great, 1 on the
-/// whole.
-struct Crumple<'a> {
-    map: Option<&'a Raster>,
-    clouds: Box<dyn Fn(f64, f64) -> f32 + Sync>,
-    size: f64,
-    strength: f32,
-}
-
-impl<'a> Crumple<'a> {
-    fn new(spec: &CrackleSpec, map: Option<&'a Raster>, chance: Chance) -> Self {
-        Crumple {
-            map,
-            clouds: Box::new(clouds(chance.0, Purpose::Crumple as u32, 2)),
-            size: spec.crumple_size.max(1.0),
-            strength: spec.crumple as f32,
-        }
-    }
-
-    fn at(&self, at: Point) -> f32 {
-        let much = match self.map {
-            Some(map) => {
-                let (x, y) = (at[0] as usize, at[1] as usize);
-                map.at(y.min(map.ny - 1), x.min(map.nx - 1))
-            }
-            None => (self.clouds)(f64::from(at[0]) / self.size, f64::from(at[1]) / self.size),
-        };
-        // Clouds are mostly near a half: spread them out.
-        let spread = ((much - 0.5) * 2.6).clamp(-1.0, 1.0);
-        1.0 + self.strength * spread * if spread > 0.0 { 1.5 } else { 0.9 }
-    }
-}
-
 struct Growth<'a> {
     field: Field,
     spec: &'a CrackleSpec,
@@ -107,38 +72,13 @@ struct Growth<'a> {
     mesh: f32,
 }
 
-/// How a crack finds its way.
-#[derive(Debug, Clone, Copy)]
-struct Course {
-    at: Point,
-    /// Unit vector.
-    heading: Point,
-    /// Radians a cell, straying.
-    bend: f32,
-    /// Radians that it may still turn for what is around it.
-    turns_left: f32,
-}
-
-impl Course {
-    fn new(at: Point, heading: Point) -> Self {
-        Course {
-            at,
-            heading,
-            bend: 0.0,
-            turns_left: MOST_TURN,
-        }
-    }
-}
-
 impl Growth<'_> {
     fn between(&mut self, least: f64, most: f64) -> f32 {
-        self.chance.between((least, most)) as f32
+        between(&mut self.chance, least, most)
     }
 
-    /// A number of about the standard normal distribution.
     fn normal(&mut self) -> f32 {
-        // Three of U(−1, 1) have variance 1.
-        (0..3).map(|_| self.between(-1.0, 1.0)).sum()
+        about_normal(&mut self.chance)
     }
 
     /// The place under most tension among a few of chance.
@@ -224,7 +164,7 @@ impl Growth<'_> {
         let mut open = 0.0;
         let longest = 2 * (self.field.nx + self.field.ny);
         for _ in 0..longest {
-            self.stray(&mut course, 0.35);
+            course.stray(0.35 * self.spec.jitter as f32, &mut self.chance);
             course.at = ahead(course.at, course.heading, STEP);
             if !self.field.holds(course.at) {
                 if !line.is_empty() {
@@ -313,8 +253,8 @@ impl Growth<'_> {
         let mut run = 0.0;
         while run < longest {
             let distance = self.field.distance(course.at);
-            self.steer(&mut course, distance);
-            self.stray(&mut course, 1.0);
+            course.steer(self.field.uphill(course.at), distance);
+            course.stray(self.spec.jitter as f32, &mut self.chance);
             let step = STEP.min(distance.max(0.5));
             course.at = ahead(course.at, course.heading, step);
             run += step;
@@ -335,37 +275,6 @@ impl Growth<'_> {
         (line, End::Tip)
     }
 
-    /// Turns towards where the distance is greatest while it grows, and across to what is near when
-    /// it falls: the nearer, the more, so that it is met at a right angle.
-    fn steer(&self, course: &mut Course, distance: f32) {
-        let uphill = self.field.uphill(course.at);
-        let rising = dot(course.heading, uphill);
-        let (towards, turn) = if rising >= 0.0 {
-            (uphill, 0.2 / (distance + 6.0))
-        } else {
-            ([-uphill[0], -uphill[1]], 0.9 / (distance + 2.0))
-        };
-        let aside = [-course.heading[1], course.heading[0]];
-        let angle = dot(aside, towards) * turn * STEP;
-        let angle = angle.clamp(-course.turns_left, course.turns_left);
-        course.turns_left -= angle.abs();
-        course.heading = turned(course.heading, angle.clamp(-0.15, 0.15));
-    }
-
-    /// Chance on the way: slow bends, and now and then a kink.
-    fn stray(&mut self, course: &mut Course, share: f32) {
-        let jitter = self.spec.jitter as f32 * share;
-        if jitter <= 0.0 {
-            return;
-        }
-        course.bend = 0.9 * course.bend + 0.012 * jitter * self.normal();
-        let mut turn = course.bend * STEP;
-        if self.between(0.0, 1.0) < 0.06 * STEP {
-            turn += 0.6 * jitter * self.normal();
-        }
-        course.heading = turned(course.heading, turn);
-    }
-
     fn width(&mut self, generation: u32) -> f32 {
         let thinner = (0..generation.min(12)).fold(1.0, |w, _| w * self.spec.thinning);
         (self.spec.width * thinner) as f32 * self.between(0.65, 1.35)
@@ -375,10 +284,4 @@ impl Growth<'_> {
         let least = 0.75 - 0.08 * f64::from(generation.min(6));
         self.between(least, 1.0)
     }
-}
-
-/// A unit vector turned by a small angle, radians.
-fn turned(a: Point, angle: f32) -> Point {
-    // tan instead of sin and cos: the same to first order, and the length is mended.
-    unit([a[0] - a[1] * angle, a[1] + a[0] * angle])
 }

@@ -13,6 +13,8 @@
 //!
 //! Lengths are in cells; a cell's middle is at half numbers.
 
+mod course;
+mod crumple;
 mod draw;
 mod field;
 mod grow;
@@ -54,10 +56,10 @@ pub struct CrackleSpec {
 impl Default for CrackleSpec {
     fn default() -> Self {
         CrackleSpec {
-            density: 0.025,
+            density: 0.022,
             width: 1.4,
             thinning: 0.75,
-            jitter: 0.5,
+            jitter: 0.6,
             folds: 0.3,
             direction: None,
             crumple: 0.6,

@@ -14,6 +14,7 @@ pub mod plain;
 mod rule;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod tiles;
 
 pub use exchange::{Classes, Exchange, ExchangeSpec};

@@ -14,9 +14,10 @@
 //!
 //! and h grows by γ·α_d·f ≤ 1 times what is missing from a_d, so h stays in 0…a_d. The γ here is the
 //! largest one that meets this in every cell, less one part in 2²⁰, and never more than that below 1
-//! (B: 0 < γ < 1). That part is far more than rounding: each product and sum of the bracket is off
-//! by a few parts in 2²⁴ of the bound above, and f and 1 − f are exact where it matters, so what is
-//! computed obeys the bounds too. B's truncation to 0…1 is kept, and counted: it never acts.
+//! (B: 0 < γ < 1). That part is more than rounding takes: the terms that push towards a bound are off
+//! by at most eleven parts in 2²⁴ altogether, those of the other sign only help, and 0 and 1 are
+//! numbers that no sum below them rounds past. B's truncation to 0…1 is kept, and counted: it never
+//! acts.
 //!
 //! **Ledger.** B's h grows by a while f loses γ·a, so dye would be made; here both move γ·a
 //! (**choice**; it only rescales α_d). An update in place changes one side of a face at a time: the

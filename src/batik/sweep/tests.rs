@@ -43,7 +43,16 @@ fn spotty(nx: usize, ny: usize) -> Dye {
 #[test]
 fn tiles_give_the_same_bits_as_the_plain_loop() {
     let bath = BathSpec::default();
-    for (nx, ny) in [(1, 1), (1, 70), (70, 1), (63, 64), (64, 63), (65, 130), (200, 66), (131, 200)] {
+    for (nx, ny) in [
+        (1, 1),
+        (1, 70),
+        (70, 1),
+        (63, 64),
+        (64, 63),
+        (65, 130),
+        (200, 66),
+        (131, 200),
+    ] {
         let (exchange, p) = (physical(nx, ny), patchy(nx, ny));
         let mut plain = spotty(nx, ny);
         let mut tiles = PixelDiffusing::new(&exchange, &p, &bath, &plain);
@@ -63,7 +72,10 @@ fn tiles_give_the_same_bits_as_the_plain_loop() {
 fn the_number_of_threads_changes_nothing() {
     let (exchange, p, bath) = (physical(300, 280), patchy(300, 280), BathSpec::default());
     let dyed = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| {
             let mut tiles = PixelDiffusing::new(&exchange, &p, &bath, &Dye::none(300, 280));
             (0..4).for_each(|_| tiles.scan());
@@ -78,11 +90,23 @@ fn dye_stays_within_its_bounds_and_is_never_truncated() {
     let (nx, ny) = (90, 75);
     for classes in [Classes::PRINTED, Classes::PHYSICAL] {
         for in_water in [0.0, 1.93, 150.0, 1e4, 1e8] {
-            for (supply, binding, most_bound) in [(0.5, 1.0, 1.0), (0.5, 0.0, 0.0), (0.05, 0.3, 0.5), (0.0, 1.0, 0.2)] {
-                let bath = BathSpec { concentration: 1.0, supply, binding, most_bound };
+            for (supply, binding, most_bound) in [
+                (0.5, 1.0, 1.0),
+                (0.5, 0.0, 0.0),
+                (0.05, 0.3, 0.5),
+                (0.0, 1.0, 0.2),
+            ] {
+                let bath = BathSpec {
+                    concentration: 1.0,
+                    supply,
+                    binding,
+                    most_bound,
+                };
                 let exchange = exchange(nx, ny, in_water, classes);
                 let mut dye = spotty(nx, ny);
-                dye.bound.iter_mut().for_each(|h| *h *= 2.0 * most_bound as f32);
+                dye.bound
+                    .iter_mut()
+                    .for_each(|h| *h *= 2.0 * most_bound as f32);
                 // The extremes themselves, side by side.
                 dye.free.iter_mut().step_by(3).for_each(|f| *f = f.round());
                 let mut tiles = PixelDiffusing::new(&exchange, &patchy(nx, ny), &bath, &dye);
@@ -104,7 +128,10 @@ fn gamma_is_below_one_and_no_larger_one_would_do() {
     // Free of exchange and binding, all of α = ½ could be taken twice over.
     let none = exchange(20, 20, 0.0, Classes::PHYSICAL);
     let open = Raster::uniform(20, 20, 1.0);
-    let bath = BathSpec { binding: 0.0, ..BathSpec::default() };
+    let bath = BathSpec {
+        binding: 0.0,
+        ..BathSpec::default()
+    };
     let tiles = PixelDiffusing::new(&none, &open, &bath, &Dye::none(20, 20));
     assert!(tiles.gamma() < 1.0 && tiles.gamma() > 0.999_99);
     // Where exchange is fast, γ times what the most open cell gives away is just below 1.
@@ -121,12 +148,17 @@ fn the_ledger_balances_with_what_the_bath_gave_and_what_updates_in_place_made() 
     for classes in [Classes::PRINTED, Classes::PHYSICAL] {
         let exchange = exchange(nx, ny, 1.93 * 80.0, classes);
         let begin = spotty(nx, ny);
-        let mut tiles = PixelDiffusing::new(&exchange, &patchy(nx, ny), &BathSpec::default(), &begin);
+        let mut tiles =
+            PixelDiffusing::new(&exchange, &patchy(nx, ny), &BathSpec::default(), &begin);
         for _ in 0..16 {
             tiles.scan();
             let account = tiles.account();
             let missing = tiles.dye().total() - begin.total() - account.supplied - account.made;
-            assert!(missing.abs() < 1e-6 * begin.total(), "{missing} of {}", begin.total());
+            assert!(
+                missing.abs() < 1e-6 * begin.total(),
+                "{missing} of {}",
+                begin.total()
+            );
         }
         // In place is not in step: what it makes is small beside what the bath gives, but not nothing.
         let account = tiles.account();
@@ -138,8 +170,17 @@ fn the_ledger_balances_with_what_the_bath_gave_and_what_updates_in_place_made() 
 fn evenly_dyed_cloth_out_of_the_bath_stays_as_it_is() {
     let mut dye = Dye::none(80, 70);
     dye.free.fill(0.625);
-    let bath = BathSpec { binding: 0.0, supply: 0.0, ..BathSpec::default() };
-    let mut tiles = PixelDiffusing::new(&physical(80, 70), &Raster::uniform(80, 70, 1.0), &bath, &dye);
+    let bath = BathSpec {
+        binding: 0.0,
+        supply: 0.0,
+        ..BathSpec::default()
+    };
+    let mut tiles = PixelDiffusing::new(
+        &physical(80, 70),
+        &Raster::uniform(80, 70, 1.0),
+        &bath,
+        &dye,
+    );
     (0..5).for_each(|_| tiles.scan());
     assert!(tiles.dye() == dye);
 }
@@ -156,7 +197,10 @@ fn cloth_turned_by_half_a_turn_ends_up_with_the_turned_dye() {
         ..exchange
     };
     let p = patchy(nx, ny);
-    let back = Raster { values: p.values.iter().rev().copied().collect(), ..p.clone() };
+    let back = Raster {
+        values: p.values.iter().rev().copied().collect(),
+        ..p.clone()
+    };
     let bath = BathSpec::default();
     let mut one = PixelDiffusing::new(&exchange, &p, &bath, &Dye::none(nx, ny));
     let mut other = PixelDiffusing::new(&turned, &back, &bath, &Dye::none(nx, ny));
@@ -166,11 +210,11 @@ fn cloth_turned_by_half_a_turn_ends_up_with_the_turned_dye() {
     }
     let (one, other) = (one.dye().free, other.dye().free);
     let layer = nx * ny;
-    let mut worst = 0.0_f32;
-    for i in 0..2 * layer {
-        let mirrored = i / layer * layer + (layer - 1 - i % layer);
-        worst = worst.max((one[i] - other[mirrored]).abs());
-    }
+    let apart = one.iter().enumerate().map(|(i, f)| {
+        let turned = i / layer * layer + (layer - 1 - i % layer);
+        (f - other[turned]).abs()
+    });
+    let worst = apart.fold(0.0, f32::max);
     assert!(worst < 0.005, "{worst}");
 }
 
@@ -194,7 +238,10 @@ fn profile(dye: &Dye, nx: usize, ny: usize) -> Vec<f64> {
         cells.map(|i| f64::from(dye.free[i])).sum::<f64>() / (2 * ny) as f64
     };
     let means: Vec<f64> = (0..nx).map(of_column).collect();
-    means.windows(6).map(|own| own.iter().sum::<f64>() / 6.0).collect()
+    means
+        .windows(6)
+        .map(|own| own.iter().sum::<f64>() / 6.0)
+        .collect()
 }
 
 /// Where a profile last falls below a level, in columns.
@@ -210,7 +257,9 @@ fn mottle(dye: &Dye, nx: usize, ny: usize) -> f64 {
     (EDGE..nx)
         .map(|x| {
             let mean = (0..ny).map(|y| f(0, y, x)).sum::<f64>() / ny as f64;
-            let square = (0..ny).map(|y| (f(0, y, x) - mean) * (f(0, y, x) - mean)).sum::<f64>();
+            let square = (0..ny)
+                .map(|y| (f(0, y, x) - mean) * (f(0, y, x) - mean))
+                .sum::<f64>();
             (square / ny as f64).sqrt()
         })
         .sum()
@@ -223,7 +272,8 @@ fn edges_fade_in_steps_that_widen_and_grow_mottled_from_4_to_16_scans() {
     let p = permeation(&drawing, &PermeationSpec::default());
     for classes in [Classes::PRINTED, Classes::PHYSICAL] {
         let exchange = exchange(nx, ny, 1.93 * 80.0, classes);
-        let mut tiles = PixelDiffusing::new(&exchange, &p, &BathSpec::default(), &Dye::none(nx, ny));
+        let mut tiles =
+            PixelDiffusing::new(&exchange, &p, &BathSpec::default(), &Dye::none(nx, ny));
         let mut seen = Vec::new();
         for scan in 1..=16 {
             tiles.scan();
@@ -236,7 +286,10 @@ fn edges_fade_in_steps_that_widen_and_grow_mottled_from_4_to_16_scans() {
                 // From nine tenths of the dye in the open to a fiftieth of it.
                 let falls = |share: f64| falls_below(&profile, share * profile[EDGE - 10]);
                 seen.push((falls(0.02) - falls(0.9), mottle(&dye, nx, ny)));
-                assert!(profile[EDGE + 20..].iter().all(|f| *f < 0.02), "20 cells into the wax");
+                assert!(
+                    profile[EDGE + 20..].iter().all(|f| *f < 0.02),
+                    "20 cells into the wax"
+                );
             }
         }
         let [(width4, mottle4), (width16, mottle16)] = [seen[0], seen[1]];
