@@ -40,6 +40,10 @@ pub enum Purpose {
     WarpFractal = 13,
     /// The unit yarns of fractal weft yarns (paper Y).
     WeftFractal = 14,
+    /// Where wax cracks, and how.
+    Crackle = 40,
+    /// Where waxed cloth was crumpled.
+    Crumple = 41,
 }
 
 impl Chance {

@@ -13,6 +13,7 @@
 //! | [`supply`] | dye enters | [`Supplies`](supply::Supplies) |
 //! | [`diffusion`] | dye moves | [`FreeDye`](diffusion::FreeDye), [`Conductances`](diffusion::Conductances) |
 //! | [`adsorption`] | dye binds | [`BoundDye`](adsorption::BoundDye) |
+//! | [`batik`] | wax, its cracks and the bath: plain functions | — |
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
 //! | [`record`] | frames are kept | the output folder |
@@ -38,6 +39,7 @@
 //! **B** batik by diffusion (2016). `docs/model.md` has the formulas and what was chosen.
 
 pub mod adsorption;
+pub mod batik;
 pub mod chance;
 pub mod cloth;
 pub mod diffusion;

@@ -10,12 +10,7 @@ use dyelapse::scenario::{Experiment, Figure, bundled_names, figure_names};
 
 pub fn run() -> ExitCode {
     match list() {
-        let _ = writeln!(list, "\nDrafts, for `dyelapse wif`:");
-    for name in drafts {
-        let title = Draft::load(name)?.draft.title().to_owned();
-        let _ = writeln!(list, "{name:widest$}  {title}");
-    }
-    Ok(list) => print(list.as_bytes()),
+        Ok(list) => print(list.as_bytes()),
         Err(why) => {
             complain(&why);
             ExitCode::from(FAILED)

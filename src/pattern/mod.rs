@@ -10,6 +10,7 @@ mod shapes;
 use serde::{Deserialize, Serialize};
 
 pub use raster::{Canvas, Raster};
+pub(crate) use shapes::clouds;
 
 use crate::scenario::check::{Checker, Problem};
 use crate::scenario::units::Length;

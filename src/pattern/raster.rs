@@ -79,7 +79,8 @@ impl Raster {
         Raster::from_image(imageops::resize(&image, nx as u32, ny as u32, filter))
     }
 
-    fn blurred(self, sigma: f64) -> Self {
+    /// With soft edges: a Gaussian blur of standard deviation `sigma` cells.
+    pub(crate) fn blurred(self, sigma: f64) -> Self {
         // Out to four standard deviations: beyond lies less than 10⁻⁴ of a Gaussian.
         let reach = (4.0 * sigma).ceil() as i64;
         let bell = |i: i64| libm::exp(-0.5 * (i as f64 / sigma) * (i as f64 / sigma));

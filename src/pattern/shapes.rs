@@ -89,7 +89,7 @@ pub(super) fn rule(pattern: &Pattern, canvas: &Canvas) -> Shape {
 }
 
 /// Clouds of chance over a plane in units of their grain, 0 to 1.
-pub(super) fn clouds(
+pub(crate) fn clouds(
     scenario_seed: u64,
     seed: u32,
     octaves: u32,

@@ -45,15 +45,22 @@ impl Beside {
                 None => Err("it is not among the bundled files".into()),
             };
         };
-        let path = self.path(name);
-        let cannot = |why| format!("it cannot be read: {why}");
-        let size = fs::metadata(&path).map_err(cannot)?;
-        if size.is_dir() {
-            return Err("it is a folder".into());
-        }
-        if size.len() > memory::free() {
-            return Err(format!("its {} bytes do not fit in memory", size.len()));
-        }
-        fs::read(&path).map_err(cannot)
+        read(&self.path(name))
     }
+}
+
+/// Reads a file that fits in memory.
+///
+/// # Errors
+/// What is wrong, in a few words.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let cannot = |why| format!("it cannot be read: {why}");
+    let size = fs::metadata(path).map_err(cannot)?;
+    if size.is_dir() {
+        return Err("it is a folder".into());
+    }
+    if size.len() > memory::free() {
+        return Err(format!("its {} bytes do not fit in memory", size.len()));
+    }
+    fs::read(path).map_err(cannot)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use image::{ImageReader, Limits, RgbImage, imageops};
+use image::{DynamicImage, ImageReader, Limits, RgbImage, imageops};
 
 use super::check::Problem;
 use super::{Beside, Scenario};
@@ -115,8 +115,7 @@ impl Images {
                     images.rasters.insert(name, raster);
                 }
                 Wanted::Photo(_) if !images.photos.contains_key(file) => {
-                    let image = reader(&bytes).and_then(|r| r.decode().map_err(not_a_picture));
-                    let rgb = image.map_err(named)?.into_rgb8();
+                    let rgb = open(&bytes).map_err(named)?.into_rgb8();
                     images.photos.insert(name, Photo { rgb });
                 }
                 Wanted::Mask if !images.masks.contains_key(file) => {
@@ -168,15 +167,20 @@ fn reader(bytes: &[u8]) -> Result<ImageReader<Cursor<&[u8]>>, String> {
     Ok(reader)
 }
 
-fn dimensions(bytes: &[u8]) -> Result<(usize, usize), String> {
+/// The width and height of a picture, from its beginning alone.
+pub(crate) fn dimensions(bytes: &[u8]) -> Result<(usize, usize), String> {
     let (width, height) = reader(bytes)?.into_dimensions().map_err(not_a_picture)?;
     Ok((width as usize, height as usize))
 }
 
+/// A picture as it is in its file.
+pub(crate) fn open(bytes: &[u8]) -> Result<DynamicImage, String> {
+    reader(bytes)?.decode().map_err(not_a_picture)
+}
+
 /// Brightness from 0 to 1; what is transparent counts as black, so that only what is drawn counts.
 fn decode(bytes: &[u8]) -> Result<Raster, String> {
-    let image = reader(bytes)?.decode().map_err(not_a_picture)?;
-    let image = image.to_luma_alpha32f();
+    let image = open(bytes)?.to_luma_alpha32f();
     Ok(Raster {
         nx: image.width() as usize,
         ny: image.height() as usize,
@@ -198,7 +202,7 @@ fn not_a_picture(why: image::ImageError) -> String {
 
 /// Blue where the warp is on top, red where the weft is; between them the nearer one counts.
 fn mask(bytes: &[u8]) -> Result<Mask, String> {
-    let image = reader(bytes)?.decode().map_err(not_a_picture)?.into_rgb8();
+    let image = open(bytes)?.into_rgb8();
     let warp_up = image.pixels().map(|pixel| pixel.0[2] > pixel.0[0]);
     Ok(Mask::new(image.width() as usize, warp_up.collect()))
 }

@@ -3,14 +3,14 @@
 //! [`Scenario`] holds what a file says; [`Experiment`] is a scenario that has been read, checked
 //! and given its pictures, ready to run. `docs` of the fields are the reference of the format.
 
-mod beside;
+pub(crate) mod beside;
 pub mod check;
 mod chemistry;
 mod error;
 mod experiment;
 mod fabric;
 mod figure;
-mod images;
+pub(crate) mod images;
 mod library;
 mod locate;
 mod look;

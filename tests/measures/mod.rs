@@ -91,16 +91,20 @@ impl Dyed {
     fn crossings(&self, shows: impl Fn(usize, usize) -> Layer) -> Crossings {
         let (warp, weft) = (&self.cloth.warp, &self.cloth.weft);
         let Grid { nx, ny } = self.cloth.grid;
-        let (across, down) = (nx / warp.pitch(), ny / weft.pitch());
+        let (across, down) = (nx / warp.span(0).pitch(), ny / weft.span(0).pitch());
         let mean = |e: usize, p: usize| {
             let layer = shows(e, p);
             let mut sum = 0.0;
-            for y in 0..weft.width {
-                for x in 0..warp.width {
-                    sum += self.dye(layer, p * weft.pitch() + y, e * warp.pitch() + x);
+            for y in 0..weft.span(0).width {
+                for x in 0..warp.span(0).width {
+                    sum += self.dye(
+                        layer,
+                        p * weft.span(0).pitch() + y,
+                        e * warp.span(0).pitch() + x,
+                    );
                 }
             }
-            sum / (warp.width * weft.width) as f64
+            sum / (warp.span(0).width * weft.span(0).width) as f64
         };
         let dye = (0..down).flat_map(|p| (0..across).map(move |e| (e, p)));
         Crossings {
