@@ -16,12 +16,13 @@ use rayon::prelude::*;
 
 pub use grid::{Grid, Layer};
 pub use mask::Mask;
-pub use weave::{Face, LARGEST_REPEAT, Weave, WeaveMatrix};
+pub use weave::{Face, LARGEST_REPEAT, Measures, Weave, WeaveMatrix};
 pub use yarns::{Span, Thread, Yarn, Yarns};
 
 use crate::chance::{Chance, Purpose};
+use crate::draft::{self, Draft};
 use crate::pattern::{Canvas, Raster};
-use crate::scenario::{ClothSpec, Images};
+use crate::scenario::{ClothSpec, Images, YarnSpec};
 use crate::schedule::{Prepare, PrepareSet, TheExperiment};
 use yarns::Draws;
 
@@ -109,13 +110,28 @@ impl Cloth {
             width: Purpose::WeftWidth,
         };
         let nominal = |porosity: f64| spec.gap_porosity.unwrap_or(porosity);
-        let warp = Yarns::spun(&spec.warp, spec.cell_mm, nx, chance, warp_draws, &[]);
-        let weft = Yarns::spun(spec.weft(), spec.cell_mm, ny, chance, weft_draws, &[]);
+        let draft = match &spec.weave {
+            Weave::Wif { file, measures } => images.draft(file).map(|draft| (draft, *measures)),
+            _ => None,
+        };
+        let threads = |threads: fn(&Draft) -> &[draft::Thread], yarn: &YarnSpec| {
+            draft.map_or(Vec::new(), |(draft, measures)| {
+                let thread = |thread| Thread::of(thread, yarn, measures, spec.cell_mm);
+                threads(draft).iter().map(thread).collect()
+            })
+        };
+        let (ends, picks) = (
+            threads(Draft::warp, &spec.warp),
+            threads(Draft::weft, spec.weft()),
+        );
+        let warp = Yarns::spun(&spec.warp, spec.cell_mm, nx, chance, warp_draws, &ends);
+        let weft = Yarns::spun(spec.weft(), spec.cell_mm, ny, chance, weft_draws, &picks);
         let mask = match &spec.weave {
             Weave::Mask { file } => images.mask(file).cloned(),
             _ => None,
         };
         let seen = mask.as_ref().map(|mask| mask.weave(&warp, &weft));
+        let seen = seen.or_else(|| draft.map(|(draft, _)| draft.drawdown()));
         Cloth::assemble(Parts {
             cell_mm: spec.cell_mm,
             weave: seen.unwrap_or_else(|| spec.weave.matrix()),

@@ -36,12 +36,30 @@ pub enum Weave {
     /// Drawn by hand: one string a pick from the top, `X` where the warp is on top and `.` where
     /// the weft is.
     Matrix(Vec<String>),
+    /// Read from a weaver's draft: its interlacing, the colours of its yarns, and their measures.
+    Wif {
+        /// A WIF file beside the scenario file, or the name of a bundled draft.
+        file: String,
+        /// Whose widths the yarns have.
+        #[serde(default)]
+        measures: Measures,
+    },
     /// Read off a photograph, cell by cell (paper D §4.3.1 b, Fig 7).
     Mask {
         /// A picture as large as the cloth, beside the scenario file: blue where the warp is on top, red
         /// where the weft is. `dyelapse segment` makes one.
         file: String,
     },
+}
+
+/// Whose widths the yarns of a draft have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Measures {
+    /// Those of the draft, in millimetres; where it gives none, those of the scenario's yarns.
+    #[default]
+    Draft,
+    /// Those of the scenario's yarns.
+    Yarns,
 }
 
 /// The yarn that covers the face of a satin.
@@ -64,7 +82,7 @@ impl Weave {
     /// A [`Problem`] that names the field and what is allowed there.
     pub fn check(&self, at: &Checker) -> Result<(), Problem> {
         match self {
-            Weave::Plain | Weave::Mask { .. } => Ok(()),
+            Weave::Plain | Weave::Mask { .. } | Weave::Wif { .. } => Ok(()),
             Weave::Twill { over, under } => {
                 at.field("over").within(*over, 1..=LARGEST_REPEAT / 2)?;
                 at.field("under").within(*under, 1..=LARGEST_REPEAT / 2)
@@ -99,7 +117,7 @@ impl Weave {
     /// The weave as one repeat, ready to be looked up. What only a file says counts as plain.
     pub fn matrix(&self) -> WeaveMatrix {
         match self {
-            Weave::Plain | Weave::Mask { .. } => {
+            Weave::Plain | Weave::Mask { .. } | Weave::Wif { .. } => {
                 WeaveMatrix::from_rule(2, 2, |e, p| (e + p) % 2 == 0)
             }
             Weave::Twill { over, under } => {

@@ -2,7 +2,9 @@
 //!
 //! Paper D gives every yarn a small random variation ("0.5r", r ∈ U(0.5, 1), one r a yarn).
 
+use super::Measures;
 use crate::chance::{Chance, Purpose};
+use crate::draft;
 use crate::scenario::YarnSpec;
 
 /// What one yarn is made of.
@@ -81,6 +83,40 @@ pub struct Thread {
     pub gap: usize,
     /// Its colour before dyeing (sRGB, 0 to 1).
     pub colour: [f32; 3],
+}
+
+impl Thread {
+    /// A thread of a draft on cells of `cell_mm`, with the measures of `yarn` where it has none or they
+    /// are not wanted.
+    pub(super) fn of(
+        thread: &draft::Thread,
+        yarn: &YarnSpec,
+        measures: Measures,
+        cell_mm: f64,
+    ) -> Self {
+        let own = match (measures, thread.width_mm()) {
+            (Measures::Draft, Some(width)) => Some((width, thread.gap_mm())),
+            _ => None,
+        };
+        let (width, gap) = match own {
+            Some((width, gap)) => {
+                // Rounded together, so that the gap does not widen the pitch.
+                let pitch = ((width + gap) / cell_mm).round().max(1.0);
+                let width = (width / cell_mm).round().clamp(1.0, pitch);
+                (width as usize, (pitch - width) as usize)
+            }
+            None => (
+                yarn.width.whole_cells(cell_mm).max(1),
+                yarn.gap.whole_cells(cell_mm),
+            ),
+        };
+        let colour = thread.colour.unwrap_or([255; 3]);
+        Thread {
+            width,
+            gap,
+            colour: colour.map(|channel| f32::from(channel) / 255.0),
+        }
+    }
 }
 
 impl Yarns {

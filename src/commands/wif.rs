@@ -8,6 +8,7 @@ use std::process::ExitCode;
 
 use super::{BAD_INPUT, FAILED, complain, print, say};
 use crate::cli::Wif;
+use dyelapse::cloth::Weave;
 use dyelapse::draft::{self, Draft, DraftError, Reading, wif};
 use dyelapse::scenario::{Experiment, ScenarioError};
 
@@ -24,7 +25,12 @@ pub fn run(arguments: &Wif) -> ExitCode {
         Err(ScenarioError::Unknown { nearest: None, .. }) => return refuse_unknown(what),
         Err(why) => return refuse(&why),
     };
-    match Draft::of_scenario(&experiment.scenario) {
+    let draft = match &experiment.scenario.cloth.weave {
+        // It was woven from a draft: that is its draft.
+        Weave::Wif { file, .. } => experiment.images.draft(file).cloned().map(Ok),
+        _ => None,
+    };
+    match draft.unwrap_or_else(|| Draft::of_scenario(&experiment.scenario)) {
         Ok(draft) => match &arguments.out {
             Some(out) => keep(&draft, out, arguments.force),
             None => print(wif::write(&draft).as_bytes()),

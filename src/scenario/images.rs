@@ -8,6 +8,7 @@ use image::{DynamicImage, ImageReader, Limits, RgbImage, imageops};
 use super::check::Problem;
 use super::{Beside, Scenario};
 use crate::cloth::{Grid, Mask};
+use crate::draft::{self, Draft, wif};
 use crate::memory;
 use crate::pattern::{Fit, Raster};
 
@@ -17,6 +18,7 @@ pub struct Images {
     rasters: BTreeMap<String, Raster>,
     photos: BTreeMap<String, Photo>,
     masks: BTreeMap<String, Mask>,
+    drafts: BTreeMap<String, Draft>,
 }
 
 /// What is wanted of a picture.
@@ -28,13 +30,15 @@ pub enum Wanted {
     Photo(Fit),
     /// Where it is blue and where it is red, for a weave.
     Mask,
+    /// The draft of a weave: no picture at all.
+    Draft,
 }
 
 impl Wanted {
     fn fit(self) -> Fit {
         match self {
             Wanted::Brightness(fit) | Wanted::Photo(fit) => fit,
-            Wanted::Mask => Fit::Exact,
+            Wanted::Mask | Wanted::Draft => Fit::Exact,
         }
     }
 }
@@ -78,6 +82,11 @@ impl Images {
         self.masks.get(file)
     }
 
+    /// The draft of this name, if it was loaded.
+    pub fn draft(&self, file: &str) -> Option<&Draft> {
+        self.drafts.get(file)
+    }
+
     /// Bytes that loading the pictures takes at most: one after the other, and then all of them.
     pub fn bytes(&self) -> u128 {
         let pixels = || {
@@ -92,7 +101,10 @@ impl Images {
     /// The names of all pictures.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         let all = self.rasters.keys().chain(self.photos.keys());
-        all.chain(self.masks.keys()).map(String::as_str)
+        let drafts = self.drafts.keys().filter(|name| !is_bundled_draft(name));
+        all.chain(self.masks.keys())
+            .chain(drafts)
+            .map(String::as_str)
     }
 
     /// Loads every picture that a scenario names.
@@ -104,6 +116,11 @@ impl Images {
         let mut images = Images::default();
         for (file, wanted, at) in scenario.pictures() {
             let path = beside.path(file);
+            if wanted == Wanted::Draft {
+                let draft = read_draft(file, beside).map_err(|why| at.problem(why))?;
+                images.drafts.insert(file.to_owned(), draft);
+                continue;
+            }
             let named = |why: String| at.problem(format!("the picture {}: {why}", path.display()));
             let bytes = beside.read(file).map_err(named)?;
             let size = dimensions(&bytes).map_err(named)?;
@@ -205,4 +222,22 @@ fn mask(bytes: &[u8]) -> Result<Mask, String> {
     let image = open(bytes)?.into_rgb8();
     let warp_up = image.pixels().map(|pixel| pixel.0[2] > pixel.0[0]);
     Ok(Mask::new(image.width() as usize, warp_up.collect()))
+}
+
+/// Whether a name is that of a draft that comes with the program.
+fn is_bundled_draft(name: &str) -> bool {
+    draft::bundled_names().contains(&name)
+}
+
+/// A draft that lies beside the scenario, or comes with the program.
+fn read_draft(file: &str, beside: &Beside) -> Result<Draft, String> {
+    let reading = if is_bundled_draft(file) {
+        Draft::load(file)
+    } else {
+        let named = |why| format!("the draft {}: {why}", beside.path(file).display());
+        wif::read(file, &beside.read(file).map_err(named)?)
+    };
+    reading
+        .map(|reading| reading.draft)
+        .map_err(|why| why.to_string())
 }

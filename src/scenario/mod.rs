@@ -124,7 +124,7 @@ impl Scenario {
         }
     }
 
-    /// Every picture that the scenario names, each with its place and what is wanted of it.
+    /// Every file that the scenario names, each with its place and what is wanted of it.
     pub fn pictures(&self) -> Vec<(&str, Wanted, Checker)> {
         let mut all: Vec<_> = Vec::new();
         for (pattern, at) in self.patterns() {
@@ -136,6 +136,10 @@ impl Scenario {
         if let Weave::Mask { file } = &self.cloth.weave {
             let at = root.field("cloth").field("weave").field("file");
             all.push((file, Wanted::Mask, at));
+        }
+        if let Weave::Wif { file, .. } = &self.cloth.weave {
+            let at = root.field("cloth").field("weave").field("file");
+            all.push((file, Wanted::Draft, at));
         }
         if let TextureLook::Photo { file, fit } = &self.look.texture {
             let at = root.field("look").field("texture").field("file");
