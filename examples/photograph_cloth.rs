@@ -1,11 +1,11 @@
-//! Takes the "photograph" of white cotton that comes with the program, and its true mask.
+//! Takes a "photograph" of white cotton, and its true mask.
 //!
 //!     cargo run --release --example photograph_cloth -- FOLDER
 //!
-//! Photographs of real cloth belong to others, so the bundled one is made here: handwoven cloth of
+//! Photographs of real cloth belong to others, so one is made here to try photo mode on: handwoven cloth of
 //! uneven yarns, drawn four times as large and made smaller as a lens does, in uneven light, with the
 //! noise of a sensor. `plain_cotton.jpg` is the photograph, `truth.png` says where its warp (blue) and
-//! its weft (red) lie on top. `dyelapse segment` sees only the photograph.
+//! its weft (red) lie on top.
 
 use std::error::Error;
 use std::path::PathBuf;

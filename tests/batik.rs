@@ -206,7 +206,7 @@ fn what_is_no_drawing_is_refused_by_name() {
         (folder.path().to_path_buf(), "it is a folder"),
         (
             file("words.png", b"these are words"),
-            "words.png: it is not a whole PNG",
+            "words.png: pictures are PNG or JPEG",
         ),
         (file("huge.png", &huge), "huge.png"),
         (

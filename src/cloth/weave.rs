@@ -47,7 +47,7 @@ pub enum Weave {
     /// Read off a photograph, cell by cell (paper D §4.3.1 b, Fig 7).
     Mask {
         /// A picture as large as the cloth, beside the scenario file: blue where the warp is on top, red
-        /// where the weft is. `dyelapse segment` makes one.
+        /// where the weft is.
         file: String,
     },
 }
