@@ -106,13 +106,13 @@ mod tests {
     use super::*;
 
     fn stripes() -> Raster {
-        Raster::from_rule(200, 40, |x, _| {
-            if (x / 20.0) as usize % 2 == 0 {
-                1.0
-            } else {
-                0.0
-            }
-        })
+        Raster::from_rule(
+            200,
+            40,
+            |x, _| {
+                if (x / 40.0).fract() < 0.5 { 1.0 } else { 0.0 }
+            },
+        )
     }
 
     #[test]
