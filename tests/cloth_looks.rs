@@ -236,3 +236,53 @@ fn masks_and_photographs_that_do_not_match_are_told_with_both_sizes() {
         "{told}"
     );
 }
+
+#[test]
+fn a_cloth_woven_from_a_draft_has_its_interlacing_its_colours_and_its_measures() {
+    for name in dyelapse::draft::bundled_names() {
+        let draft = dyelapse::draft::Draft::load(name).unwrap().draft;
+        let text = format!(
+            "(title: \"t\", cloth: (size: (Cells(300), Cells(200)), weave: Wif(file: \"{name}\")),
+              supply: [], process: (duration: Steps(1)))"
+        );
+        let app = dyed(experiment(&text), 0);
+        let cloth = app.world().resource::<Cloth>();
+        let (weave, repeat) = (draft.drawdown(), (draft.warp().len(), draft.weft().len()));
+        for (i, (y, x)) in (0..200)
+            .flat_map(|y| (0..300).map(move |x| (y, x)))
+            .enumerate()
+        {
+            let (e, p) = (cloth.warp.number(x), cloth.weft.number(y));
+            let up = weave.warp_up(e % repeat.0, p % repeat.1);
+            assert_eq!(cloth.warp_up(y, x), up, "{name}, cell {i}");
+        }
+        for (yarns, threads) in [(&cloth.warp, draft.warp()), (&cloth.weft, draft.weft())] {
+            for (i, (yarn, span)) in yarns.yarns.iter().zip(yarns.spans()).enumerate() {
+                let thread = &threads[i % threads.len()];
+                let colour = thread.colour.unwrap_or([255; 3]);
+                assert_eq!(yarn.colour, colour.map(|c| f32::from(c) / 255.0));
+                if let Some(spacing) = thread.spacing_mm {
+                    let pitch = span.pitch() as f64 * cloth.cell_mm;
+                    assert!(
+                        (pitch - spacing).abs() <= 0.5 * cloth.cell_mm + 1e-9,
+                        "{name}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn measures_of_the_scenario_can_be_laid_on_a_draft() {
+    let text = "(title: \"t\", cloth: (size: (Cells(60), Cells(40)),
+          weave: Wif(file: \"houndstooth\", measures: Yarns), warp: (width: Cells(3), gap: Cells(2))),
+        supply: [], process: (duration: Steps(1)))";
+    let app = dyed(experiment(text), 0);
+    let cloth = app.world().resource::<Cloth>();
+    let all = cloth.warp.spans().iter().chain(cloth.weft.spans());
+    assert!(all.clone().count() > 10);
+    for span in all {
+        assert_eq!((span.width, span.gap), (3, 2));
+    }
+}
