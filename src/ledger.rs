@@ -53,7 +53,7 @@ fn open(mut commands: Commands) {
     commands.insert_resource(Ledger::default());
 }
 
-fn balance(
+pub(crate) fn balance(
     mut ledger: ResMut<Ledger>,
     cloth: Res<Cloth>,
     free: Res<FreeDye>,

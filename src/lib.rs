@@ -85,6 +85,7 @@ pub mod prelude {
 /// | [`AdsorptionPlugin`](adsorption::AdsorptionPlugin) | dye binding |
 /// | [`LedgerPlugin`](ledger::LedgerPlugin) | accounts of the dye |
 /// | [`TexturePlugin`](texture::TexturePlugin) | pictures of the cloth |
+/// | [`BatikPlugin`](batik::stage::BatikPlugin) | wax, and baths one after the other |
 pub struct DyeingPlugins;
 
 impl PluginGroup for DyeingPlugins {
@@ -97,6 +98,7 @@ impl PluginGroup for DyeingPlugins {
             .add(adsorption::AdsorptionPlugin)
             .add(ledger::LedgerPlugin)
             .add(texture::TexturePlugin)
+            .add(batik::stage::BatikPlugin)
     }
 }
 

@@ -11,6 +11,7 @@ use std::borrow::Cow;
 
 use bevy::prelude::*;
 
+use crate::batik::stage as batik;
 use crate::cloth::Cloth;
 use crate::diffusion::{Conductances, FreeDye};
 use crate::ledger::Ledger;
@@ -30,11 +31,19 @@ impl Plugin for SupplyPlugin {
                 DyeStep,
                 (bring, soak.run_if(there_are_baths))
                     .chain()
+                    .in_set(SupplySystems)
                     .in_set(DyeSet::Supply),
             )
-            .add_systems(DyeFrame, bring.in_set(FrameSet::Supply));
+            .add_systems(
+                DyeFrame,
+                bring.in_set(SupplySystems).in_set(FrameSet::Supply),
+            );
     }
 }
+
+/// The systems that bring dye, for what comes before or after them in their sets.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SupplySystems;
 
 /// Everything that is supplied to the cloth.
 #[derive(Resource, Debug, Clone, Default)]
@@ -288,6 +297,14 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
                 cells: reached(&shape, *speed as f32, &cloth),
             }),
         }
+    }
+    for (from, until, bath, p) in batik::baths(&experiment) {
+        supplies.baths.push(Bath {
+            from,
+            until,
+            concentration: bath.concentration as f32,
+            cells: reached(&p, bath.supply as f32, &cloth),
+        });
     }
     supplies.end_holds();
     supplies.events.sort_by_key(|event| (event.at, event.gift));

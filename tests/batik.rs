@@ -40,7 +40,7 @@ fn cloth(seed: u64) -> Cloth {
 
 /// The design that comes with the program.
 fn spray() -> Raster {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/designs/spray.png");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenarios/designs/spray.png");
     let drawing = Drawing::load(&file, Ground::Detect).expect("our own drawing");
     drawing.wax(SIDE, SIDE, Waxed::Ground)
 }

@@ -13,6 +13,7 @@
 //! one draw a cloth cell and one a pixel.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::crossings::Crossings;
 use super::noise::{fold_seed, normal};
@@ -20,7 +21,8 @@ use super::picture::Colours;
 use crate::texture::Rgb;
 
 /// How the ellipse weave looks.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct EllipseSpec {
     /// R_S: how much paler the raised part is, 0 to 1.
     pub paler: f64,

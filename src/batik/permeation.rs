@@ -16,6 +16,7 @@
 //! thin wax lets through p = I.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::distance::distance_within;
 use crate::pattern::Raster;
@@ -24,7 +25,8 @@ use crate::pattern::Raster;
 const LEVELS: u32 = 4;
 
 /// How wax thins out towards its edges.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct PermeationSpec {
     /// Th: how far from an edge wax is thinner, cells, 0 or more.
     pub reach: f64,

@@ -77,6 +77,12 @@ impl FreeDye {
         }
     }
 
+    /// Washes all free dye out of the cloth.
+    pub fn wash(&mut self) {
+        self.concentration.fill(0.0);
+        self.carry.fill(0.0);
+    }
+
     /// What a cell holds, to the last bit.
     fn exactly(&self, i: usize) -> f64 {
         let carry = self.carry.get(i).copied().unwrap_or(0.0);
@@ -240,6 +246,11 @@ fn prepare(
     experiment: Res<TheExperiment>,
 ) {
     let scenario = &experiment.scenario;
+    if scenario.sweeps() {
+        // Paper B's sweeps move the dye: see `batik`.
+        commands.insert_resource(FreeDye::clean(cloth.grid, Solver::Accelerated));
+        return;
+    }
     let faces = Faces {
         cloth: &cloth,
         paths: &scenario.cloth.paths,

@@ -61,10 +61,18 @@ impl Plan {
             let step = spread(u64::from(frame), u64::from(count), total);
             stop_at(&mut stops, step).frame = Some(frame);
         }
-        let sheet = &scenario.record.sheet;
+        let step_h = scenario.process.step_h;
+        let sheet: Vec<u64> = match &scenario.batik {
+            // As every step of the recipe leaves the cloth.
+            Some(batik) if scenario.record.sheet.is_empty() => batik.shown(step_h),
+            _ => {
+                let sheet = scenario.record.sheet.iter();
+                sheet.map(|time| time.steps(step_h)).collect()
+            }
+        };
         let named: Vec<u64> = sheet
             .iter()
-            .map(|time| time.steps(scenario.process.step_h))
+            .copied()
             .filter(|step| *step <= total)
             .collect();
         // A process cut short by `--steps` may end before most of the sheet's moments.

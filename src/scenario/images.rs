@@ -7,6 +7,7 @@ use image::{DynamicImage, ImageReader, Limits, RgbImage, imageops};
 
 use super::check::Problem;
 use super::{Beside, Scenario};
+use crate::batik::drawing::{Drawing, Ground};
 use crate::cloth::{Grid, Mask};
 use crate::draft::{self, Draft, wif};
 use crate::memory;
@@ -19,6 +20,7 @@ pub struct Images {
     photos: BTreeMap<String, Photo>,
     masks: BTreeMap<String, Mask>,
     drafts: BTreeMap<String, Draft>,
+    drawings: BTreeMap<String, Drawing>,
 }
 
 /// What is wanted of a picture.
@@ -30,6 +32,8 @@ pub enum Wanted {
     Photo(Fit),
     /// Where it is blue and where it is red, for a weave.
     Mask,
+    /// What is drawn, for wax.
+    Drawing(Ground),
     /// The draft of a weave: no picture at all.
     Draft,
 }
@@ -39,6 +43,7 @@ impl Wanted {
         match self {
             Wanted::Brightness(fit) | Wanted::Photo(fit) => fit,
             Wanted::Mask | Wanted::Draft => Fit::Exact,
+            Wanted::Drawing(_) => Fit::Stretch,
         }
     }
 }
@@ -82,6 +87,11 @@ impl Images {
         self.masks.get(file)
     }
 
+    /// The drawing of this name, if it was loaded.
+    pub fn drawing(&self, file: &str) -> Option<&Drawing> {
+        self.drawings.get(file)
+    }
+
     /// The draft of this name, if it was loaded.
     pub fn draft(&self, file: &str) -> Option<&Draft> {
         self.drafts.get(file)
@@ -104,6 +114,7 @@ impl Images {
         let drafts = self.drafts.keys().filter(|name| !is_bundled_draft(name));
         all.chain(self.masks.keys())
             .chain(drafts)
+            .chain(self.drawings.keys())
             .map(String::as_str)
     }
 
@@ -134,6 +145,11 @@ impl Images {
                 Wanted::Photo(_) if !images.photos.contains_key(file) => {
                     let rgb = open(&bytes).map_err(named)?.into_rgb8();
                     images.photos.insert(name, Photo { rgb });
+                }
+                Wanted::Drawing(ground) if !images.drawings.contains_key(file) => {
+                    let drawing = Drawing::read(&path, &bytes, ground);
+                    let drawing = drawing.map_err(|why| at.problem(why.to_string()))?;
+                    images.drawings.insert(name, drawing);
                 }
                 Wanted::Mask if !images.masks.contains_key(file) => {
                     let mask = mask(&bytes).map_err(named)?;

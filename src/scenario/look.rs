@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::check::{Checker, Problem};
+use crate::batik::ellipse::EllipseSpec;
 use crate::pattern::Fit;
 
 /// The most pixels along one side of a cell.
@@ -60,6 +61,8 @@ pub enum TextureLook {
     Shaded,
     /// Yarns whose colour is unevenly dense (paper Y).
     Fractal(FractalLook),
+    /// A raised ellipse at every crossing, in HSV with noise (paper B §3.5, eq 8).
+    Ellipses(EllipseSpec),
     /// A photograph of cloth beside the scenario file (paper D §4.3.1 b).
     Photo {
         /// The photograph, PNG or JPEG.
@@ -210,6 +213,22 @@ impl LookSpec {
             at.field("unit_yarns").within(look.unit_yarns, 1..=1000)?;
             at.field("contrast").within(look.contrast, 0.0..=1.0)?;
             at.field("relief").within(look.relief, 0.0..=1.0)?;
+        }
+        if let TextureLook::Ellipses(look) = &self.texture {
+            let at = at.field("texture").field("Ellipses");
+            for (name, value, most) in [
+                ("paler", look.paler, 1.0),
+                ("lighter", look.lighter, 1.0),
+                ("shade", look.shade, 1.0),
+                ("reach", look.reach, 100.0),
+                ("cell_noise", look.cell_noise, 1.0),
+                ("pixel_noise", look.pixel_noise, 1.0),
+                ("blur", look.blur, 100.0),
+            ] {
+                at.field(name).within(value, 0.0..=most)?;
+            }
+            at.field("size").item(0).within(look.size.0, 0.01..=10.0)?;
+            at.field("size").item(1).within(look.size.1, 0.01..=10.0)?;
         }
         let at = at.field("yarn");
         let turn = self.yarn.turn;

@@ -3,6 +3,7 @@
 //! [`Scenario`] holds what a file says; [`Experiment`] is a scenario that has been read, checked
 //! and given its pictures, ready to run. `docs` of the fields are the reference of the format.
 
+mod batik;
 pub(crate) mod beside;
 pub mod check;
 mod chemistry;
@@ -19,6 +20,7 @@ pub mod units;
 
 use serde::{Deserialize, Serialize};
 
+pub use batik::{BatikSolver, BatikSpec, BatikStep, Reading};
 pub use beside::Beside;
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
 pub(crate) use error::nearest;
@@ -55,6 +57,9 @@ pub struct Scenario {
     /// Where the cloth is tied, clamped or pasted: the volume ratio B, 0 free to 1 shut.
     #[serde(default)]
     pub resist: Pattern,
+    /// Wax, dye, boil: a batik. Its baths come beside `supply`.
+    #[serde(default)]
+    pub batik: Option<BatikSpec>,
     /// How dye binds to fibre. Left out: it does not.
     #[serde(default)]
     pub adsorption: Option<AdsorptionSpec>,
@@ -87,6 +92,10 @@ impl Scenario {
         if let Some(adsorption) = &self.adsorption {
             adsorption.check(&at.field("adsorption"))?;
         }
+        if let Some(batik) = &self.batik {
+            let steps = self.process.steps();
+            batik.check(&at.field("batik"), cell_mm, step_h, steps)?;
+        }
         self.look.check(&at.field("look"))?;
         self.record.check(&at.field("record"), &self.process)
     }
@@ -108,10 +117,16 @@ impl Scenario {
         )))
     }
 
+    /// Whether dye moves in the sweeps of paper B.
+    pub fn sweeps(&self) -> bool {
+        self.batik.as_ref().is_some_and(BatikSpec::sweeps)
+    }
+
     /// Whether dye is taken up from a bath.
     pub fn has_baths(&self) -> bool {
         let is_bath = |supply: &SupplySpec| matches!(supply, SupplySpec::Bath { .. });
-        self.supply.iter().any(is_bath)
+        let waxed = self.batik.as_ref().is_some_and(|batik| !batik.sweeps());
+        waxed || self.supply.iter().any(is_bath)
     }
 
     /// The solver that computes the process. A bath, which takes a part of what is missing in every
@@ -133,6 +148,11 @@ impl Scenario {
             }
         }
         let root = Checker::root();
+        if let Some(batik) = &self.batik {
+            for (file, ground, at) in batik.drawings(&root.field("batik")) {
+                all.push((file, Wanted::Drawing(ground), at));
+            }
+        }
         if let Weave::Mask { file } = &self.cloth.weave {
             let at = root.field("cloth").field("weave").field("file");
             all.push((file, Wanted::Mask, at));
@@ -154,6 +174,9 @@ impl Scenario {
         let mut waiting: Vec<_> = vec![(&self.resist, at.field("resist"))];
         for (i, supply) in self.supply.iter().enumerate() {
             waiting.push((supply.shape(), at.field("supply").item(i).field("shape")));
+        }
+        if let Some(batik) = &self.batik {
+            waiting.extend(batik.patterns(&at.field("batik")));
         }
         waiting.extend(
             self.cloth

@@ -26,6 +26,8 @@ pub use shade::seen;
 use taps::Tap;
 
 use crate::adsorption::BoundDye;
+use crate::batik::crossings::Crossings;
+use crate::batik::ellipse::EllipseWeave;
 use crate::cloth::{Cloth, Layer, Yarns};
 use crate::diffusion::FreeDye;
 use crate::scenario::{Experiment, Images, LookSpec, Photo, Scenario, Show, Side, TextureLook};
@@ -50,8 +52,11 @@ pub struct Scale(pub u32);
 pub struct Texture {
     /// Pixels along one side of a cell.
     pub scale: usize,
+    side: Side,
     /// Layers and shade of every pixel, row by row.
     shade: Vec<Shade>,
+    /// The ellipse weave, where the cloth is drawn as one.
+    weave: Option<EllipseWeave>,
     /// The photograph that the colours are multiplied with, if there is one: RGB of every pixel.
     photo: Option<Vec<u8>>,
     /// Where every column finds its dye in the weft and in the warp layer, and every row.
@@ -94,7 +99,20 @@ impl Texture {
             }
         };
         let look = &scenario.look;
+        let mut weave = None;
         let (shade, photo) = match &look.texture {
+            TextureLook::Ellipses(spec) => {
+                let up = |y, x| face.warp_up(y, x);
+                let crossings = Crossings::of(face);
+                weave = Some(EllipseWeave::new(
+                    &crossings,
+                    up,
+                    *spec,
+                    scale,
+                    scenario.seed,
+                ));
+                (Vec::new(), None)
+            }
             TextureLook::Shaded => (shade::draw(face, look.yarn, scenario.seed, scale), None),
             TextureLook::Fractal(fractal) => {
                 (fractal::draw(face, fractal, scenario.seed, scale), None)
@@ -114,7 +132,9 @@ impl Texture {
         Texture {
             scale,
             shade,
+            weave,
             photo,
+            side,
             columns: [
                 turn(taps::along(cloth.grid.nx, scale)),
                 turn(taps::across(&face.warp, scale)),
@@ -131,12 +151,14 @@ impl Texture {
 
     /// Draws dye on the cloth.
     pub fn draw(&self, cloth: &Cloth, free: &FreeDye, bound: &BoundDye, picture: &mut Picture) {
-        let (nx, ny, scale) = (cloth.grid.nx, cloth.grid.ny, self.scale);
-        let width = nx * scale;
-        picture.width = width;
-        picture.height = ny * scale;
-        picture.rgb.resize(width * picture.height * 3, 0);
         let amounts = self.amounts(cloth, free, bound);
+        if self.weave.is_some() {
+            let colour = |i: usize| self.ramp.colour(amounts[i]);
+            return self.draw_colours(cloth, colour, picture);
+        }
+        let (nx, scale) = (cloth.grid.nx, self.scale);
+        let width = nx * scale;
+        self.size(cloth, picture);
         let (weft, warp) = amounts.split_at(cloth.grid.layer_len());
         let between = |layer: &[f32], tap: Tap, line: &mut Vec<f32>| {
             let row = |y: u32| &layer[y as usize * nx..][..nx];
@@ -161,8 +183,64 @@ impl Texture {
             });
     }
 
-    /// The amount of dye shown in every cell.
-    fn amounts(&self, cloth: &Cloth, free: &FreeDye, bound: &BoundDye) -> Vec<f32> {
+    fn size(&self, cloth: &Cloth, picture: &mut Picture) {
+        picture.width = cloth.grid.nx * self.scale;
+        picture.height = cloth.grid.ny * self.scale;
+        picture.rgb.resize(picture.width * picture.height * 3, 0);
+    }
+
+    /// Draws the cloth with a colour (sRGB, 0 to 1) for every cell of a `(layer, y, x)` field.
+    pub fn draw_colours(
+        &self,
+        cloth: &Cloth,
+        colour: impl Fn(usize) -> Rgb + Sync,
+        picture: &mut Picture,
+    ) {
+        self.size(cloth, picture);
+        let (nx, width) = (cloth.grid.nx, picture.width);
+        if let Some(weave) = &self.weave {
+            let shown = |y: usize, x: usize| {
+                let (layer, x) = match self.side {
+                    Side::Face => (seen(cloth, y, x), x),
+                    Side::Back => {
+                        let x = nx - 1 - x;
+                        (seen(cloth, y, x).other(), x)
+                    }
+                };
+                colour(cloth.grid.index(layer, y, x))
+            };
+            picture.rgb = weave.draw(shown).bytes();
+            return;
+        }
+        let colours: Vec<Rgb> = (0..cloth.grid.len()).into_par_iter().map(&colour).collect();
+        picture
+            .rgb
+            .par_chunks_mut(width * 3)
+            .enumerate()
+            .for_each(|(py, row)| {
+                let of = |px: usize, layer: Layer| {
+                    let row = self.rows[layer as usize][py];
+                    let column = self.columns[layer as usize][px];
+                    let at =
+                        |y: u32, x: u32| colours[cloth.grid.index(layer, y as usize, x as usize)];
+                    let line = |y| mixed(at(y, column.near), at(y, column.far), column.share);
+                    let colour = mixed(line(row.near), line(row.far), row.share);
+                    self.tinted(colour, layer, py, px)
+                };
+                let shades = &self.shade[py * width..][..width];
+                let pixels = row.as_chunks_mut::<3>().0;
+                for (px, (pixel, shade)) in pixels.iter_mut().zip(shades).enumerate() {
+                    let colour = match shade.only() {
+                        Some(layer) => of(px, layer),
+                        None => mixed(of(px, Layer::Weft), of(px, Layer::Warp), shade.warp()),
+                    };
+                    *pixel = display(colour, shade.value());
+                }
+            });
+    }
+
+    /// The amount of dye shown in every cell, `(layer, y, x)`.
+    pub(crate) fn amounts(&self, cloth: &Cloth, free: &FreeDye, bound: &BoundDye) -> Vec<f32> {
         let (nx, ny) = (cloth.grid.nx, cloth.grid.ny);
         let mut amounts = vec![0.0; cloth.grid.len()];
         amounts
@@ -319,7 +397,7 @@ fn prepare(
     commands.insert_resource(Picture::default());
 }
 
-fn draw(
+pub(crate) fn draw(
     texture: Res<Texture>,
     cloth: Res<Cloth>,
     free: Res<FreeDye>,

@@ -26,12 +26,14 @@ pub use network::{Crack, End, Network};
 
 use crate::chance::Chance;
 use crate::pattern::Raster;
+use serde::{Deserialize, Serialize};
 
 /// A point on the cloth, across and down, in cells from its top left corner.
 pub type Point = [f32; 2];
 
 /// How wax breaks.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct CrackleSpec {
     /// Length of all cracks over the area of the wax, per cell: meshes are about 2 / density cells
     /// wide. 0 for wax that does not break.

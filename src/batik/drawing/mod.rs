@@ -11,6 +11,7 @@
 #[cfg(test)]
 mod tests;
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -82,7 +83,7 @@ pub enum DrawingError {
 }
 
 /// Which colour of a picture is its ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Ground {
     /// The one that most of its frame has.
     #[default]
@@ -94,7 +95,7 @@ pub enum Ground {
 }
 
 /// Where the wax goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Waxed {
     /// On what is drawn, which stays pale on dyed cloth.
     #[default]
@@ -117,12 +118,23 @@ impl Drawing {
     /// A [`DrawingError`] that names the file, if it cannot be read, is too small or too large, or
     /// if nothing is drawn.
     pub fn load(file: &Path, ground: Ground) -> Result<Self, DrawingError> {
+        let bytes = beside::read(file).map_err(|why| DrawingError::Unreadable {
+            file: file.into(),
+            why,
+        })?;
+        Drawing::read(file, &bytes, ground)
+    }
+
+    /// Reads a drawing from the bytes of a file, whose name stands in messages.
+    ///
+    /// # Errors
+    /// As [`Drawing::load`].
+    pub fn read(file: &Path, bytes: &[u8], ground: Ground) -> Result<Self, DrawingError> {
         let unreadable = |why| DrawingError::Unreadable {
             file: file.into(),
             why,
         };
-        let bytes = beside::read(file).map_err(unreadable)?;
-        let (width, height) = images::dimensions(&bytes).map_err(unreadable)?;
+        let (width, height) = images::dimensions(bytes).map_err(unreadable)?;
         if width < SMALLEST || height < SMALLEST {
             return Err(DrawingError::TooSmall {
                 file: file.into(),
@@ -139,7 +151,7 @@ impl Drawing {
                 needed,
             });
         }
-        let image = images::open(&bytes).map_err(unreadable)?;
+        let image = images::open(bytes).map_err(unreadable)?;
         Drawing::of(&image, ground).ok_or_else(|| DrawingError::Empty { file: file.into() })
     }
 

@@ -18,10 +18,12 @@ mod tile;
 mod tiles;
 
 pub use exchange::{Classes, Exchange, ExchangeSpec};
+use serde::{Deserialize, Serialize};
 pub use tiles::PixelDiffusing;
 
 /// A bath of dye.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct BathSpec {
     /// M_s: its concentration, 0 to 1.
     pub concentration: f64,

@@ -1,0 +1,175 @@
+//! Batik as a scenario: wax, dye, wax again, dye darker, boil.
+
+mod common;
+
+use common::{dyed, experiment, go_on, ledger};
+use dyelapse::batik::stage::Batik;
+use dyelapse::prelude::*;
+use dyelapse::scenario::Origin;
+
+/// Two baths on 120 by 90 cells; the first wax keeps a disc, the second one a larger one.
+fn recipe(batik: &str, more: &str) -> String {
+    format!(
+        "(title: \"t\", seed: 4,
+          cloth: (size: (Cells(120), Cells(90)), warp: (width: Cells(5), gap: Cells(1),
+            vary_porosity: (0.5, 1.0), twist: 0.025)),
+          batik: ({batik} steps: [
+            Wax(pattern: Disc(diameter: Cells(40)), crackle: (density: 0)),
+            Dye(colour: (10, 0.8, 0.6), lasts: Steps(6)),
+            Wax(pattern: Disc(diameter: Cells(70)), crackle: (density: 0)),
+            Dye(colour: (220, 0.8, 0.5), lasts: Steps(6)),
+            Boil,
+          ]),
+          supply: [], process: (duration: Steps(15)) {more})"
+    )
+}
+
+/// The mean colour around a place, 0 to 255.
+fn colour(picture: &Picture, (x, y): (usize, usize)) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for dy in 0..6 {
+        for dx in 0..6 {
+            let at = 3 * ((y + dy) * picture.width + x + dx);
+            (0..3).for_each(|i| sum[i] += f64::from(picture.rgb[at + i]) / 36.0);
+        }
+    }
+    sum
+}
+
+const WHITE: (usize, usize) = (57, 42);
+const RED: (usize, usize) = (57, 14);
+const BOTH: (usize, usize) = (4, 4);
+
+#[test]
+fn what_was_waxed_twice_is_white_what_was_waxed_once_red_and_the_rest_has_both_dyes() {
+    for look in ["", ", look: (texture: Ellipses(()))"] {
+        let app = dyed(experiment(&recipe("", look)), 15);
+        let picture = app.world().resource::<Picture>();
+        let [white, red, both] = [WHITE, RED, BOTH].map(|place| colour(picture, place));
+        assert!(white.iter().all(|channel| *channel > 150.0), "{white:?}");
+        assert!(red[0] > red[2] + 40.0, "{red:?}");
+        assert!(
+            both.iter().sum::<f64>() < red.iter().sum::<f64>(),
+            "{both:?}"
+        );
+        assert!((0..3).all(|i| both[i] < white[i]));
+    }
+}
+
+#[test]
+fn the_ledger_balances_at_every_moment_of_a_recipe() {
+    for more in ["", "rinsed"] {
+        let text = recipe("", "");
+        let text = match more {
+            "" => text,
+            _ => text.replace("lasts: Steps(6)", "lasts: Steps(6), rinse: true"),
+        };
+        let mut app = dyed(experiment(&text), 0);
+        for step in 1..=15 {
+            go_on(&mut app, step);
+            let ledger = ledger(&app);
+            assert!(
+                ledger.imbalance().abs() <= 1e-6 * ledger.supplied,
+                "step {step}"
+            );
+            assert_eq!(app.world().resource::<Batik>().truncated(), 0);
+        }
+        assert_eq!(ledger(&app).removed > 1.0, more == "rinsed");
+    }
+}
+
+#[test]
+fn looking_often_changes_no_batik() {
+    let text = recipe("", "");
+    let mut often = dyed(experiment(&text), 0);
+    (1..=15).for_each(|step| go_on(&mut often, step));
+    let once = dyed(experiment(&text), 15);
+    assert!(often.world().resource::<Picture>() == once.world().resource::<Picture>());
+}
+
+#[test]
+fn wax_is_seen_until_it_is_boiled_off() {
+    let at = |batik: &str, step| {
+        let app = dyed(experiment(&recipe(batik, "")), step);
+        colour(app.world().resource::<Picture>(), WHITE)
+    };
+    // Wax is yellowish: it takes blue away.
+    let (waxed, bare) = (at("", 0), at("show_wax: false,", 0));
+    assert!(waxed[2] + 10.0 < bare[2], "{waxed:?} {bare:?}");
+    assert_eq!(at("", 15), at("show_wax: false,", 15));
+}
+
+#[test]
+fn the_solvers_of_paper_d_dye_the_same_places_through_the_same_wax() {
+    let solvers = "solver: Diffusion,";
+    let more = ", adsorption: (isotherm: Langmuir(kl: 20))";
+    let text = recipe(solvers, more)
+        .replace("Steps(6)", "Steps(200)")
+        .replace("duration: Steps(15)", "duration: Steps(403)")
+        .replace("twist: 0.025", "twist: 0.5");
+    let app = dyed(experiment(&text), 403);
+    let picture = app.world().resource::<Picture>();
+    let [white, red, both] = [WHITE, RED, BOTH].map(|place| colour(picture, place));
+    assert!(white.iter().all(|channel| *channel > 150.0), "{white:?}");
+    assert!(red[0] > red[2] + 20.0, "{red:?}");
+    assert!(
+        both.iter().sum::<f64>() < red.iter().sum::<f64>(),
+        "{both:?}"
+    );
+    let ledger = ledger(&app);
+    assert!(ledger.supplied > 100.0);
+    assert!(ledger.imbalance().abs() <= 1e-6 * ledger.supplied);
+}
+
+#[test]
+fn one_seed_cracks_one_way_and_another_another() {
+    let picture = |seed: u32| {
+        let text = recipe("", "")
+            .replace("density: 0", "density: 0.05")
+            .replace("seed: 4", &format!("seed: {seed}"));
+        dyed(experiment(&text), 15)
+            .world()
+            .resource::<Picture>()
+            .clone()
+    };
+    assert!(picture(1) == picture(1));
+    assert!(picture(1) != picture(2));
+}
+
+#[test]
+fn mistakes_in_a_recipe_are_told_with_their_place() {
+    let told = |from: &str, to: &str| {
+        let text = recipe("", "").replacen(from, to, 1);
+        Experiment::parse("t", Origin::Memory, text)
+            .unwrap_err()
+            .to_string()
+    };
+    let cases = [
+        ("duration: Steps(15)", "duration: Steps(20)", "`Steps(15)`"),
+        (
+            "lasts: Steps(6)",
+            "lasts: Steps(0)",
+            "batik.steps[1].Dye.lasts",
+        ),
+        (
+            "density: 0",
+            "density: 7",
+            "batik.steps[0].Wax.crackle.density",
+        ),
+        (
+            "pattern: Disc(diameter: Cells(40))",
+            "drawing: \"none.png\"",
+            "none.png",
+        ),
+        ("pattern: Disc(diameter: Cells(40)),", "", "one of both"),
+        (
+            "(10, 0.8, 0.6)",
+            "(10, 0.8, 6)",
+            "batik.steps[1].Dye.colour[2]",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        let told = told(from, to);
+        assert!(told.contains(expected), "{told}");
+    }
+}
