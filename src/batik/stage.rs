@@ -18,7 +18,7 @@ use crate::cloth::Cloth;
 use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
 use crate::pattern::{Canvas, Raster};
-use crate::scenario::{BatikSolver, BatikSpec, BatikStep, Experiment, Reading};
+use crate::scenario::{BatikShow, BatikSolver, BatikSpec, BatikStep, Experiment, Reading};
 use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
 };
@@ -104,6 +104,7 @@ pub struct Batik {
     sweeps: Option<PixelDiffusing>,
     /// What of its account is in the ledger.
     booked: f64,
+    show: BatikShow,
     show_wax: bool,
     seed: u64,
 }
@@ -235,6 +236,7 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         exchange,
         sweeps: None,
         booked: 0.0,
+        show: spec.show,
         show_wax: spec.show_wax,
         seed: scenario.seed,
     });
@@ -419,6 +421,27 @@ fn draw(
     bound: Res<BoundDye>,
     mut picture: ResMut<Picture>,
 ) {
+    let map = |wax: &Wax| match batik.show {
+        BatikShow::Cloth => None,
+        BatikShow::Drawing => Some(wax.drawing.clone()),
+        BatikShow::Permeation => Some(wax.permeation.clone()),
+    };
+    if let Some(map) = batik.wax.as_ref().and_then(map) {
+        // The same grey in both layers, without any cloth.
+        let layer = map.values.len();
+        let scale = texture.scale;
+        let width = picture.width.max(1);
+        let grey = |i: usize| {
+            let (y, x) = (i / width / scale, i % width / scale);
+            (255.0 * map.values[(y * map.nx + x) % layer] + 0.5) as u8
+        };
+        let pixels = picture.rgb.as_chunks_mut::<3>().0;
+        pixels
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, p)| *p = [grey(i); 3]);
+        return;
+    }
     let now = match batik.exchange {
         Some(_) => {
             let mut all = free.concentration.clone();

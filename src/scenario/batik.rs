@@ -22,6 +22,9 @@ pub struct BatikSpec {
     /// How dye moves through the waxed cloth.
     #[serde(default)]
     pub solver: BatikSolver,
+    /// What is shown.
+    #[serde(default)]
+    pub show: BatikShow,
     /// Whether wax is seen until it is boiled off.
     #[serde(default = "yes")]
     pub show_wax: bool,
@@ -52,6 +55,18 @@ impl Default for BatikSolver {
             step: scan_time(),
         }
     }
+}
+
+/// What a batik shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum BatikShow {
+    /// The cloth.
+    #[default]
+    Cloth,
+    /// I: the wax with its cracks, black, on what is open, white (paper B Fig 5, middle).
+    Drawing,
+    /// p: how well it lets dye through, from black to white (paper B Fig 5, right).
+    Permeation,
 }
 
 /// A reading of the τ₂ of paper B's Table 1.

@@ -20,7 +20,7 @@ pub mod units;
 
 use serde::{Deserialize, Serialize};
 
-pub use batik::{BatikSolver, BatikSpec, BatikStep, Reading};
+pub use batik::{BatikShow, BatikSolver, BatikSpec, BatikStep, Reading};
 pub use beside::Beside;
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
 pub(crate) use error::nearest;
