@@ -15,15 +15,15 @@ const LIGHT: [f32; 3] = [-0.34, -0.44, 0.831];
 /// Light from all around, as a share of all light on a surface that faces the viewer.
 const AMBIENT: f32 = 0.74;
 /// How much less of the light from all around reaches the side of a yarn than its top.
-const EDGE_SHADE: f32 = 0.46;
+const EDGE_SHADE: f32 = 0.40;
 /// How much darker a yarn is where it comes out from beneath another.
-const CROSSING_SHADE: f32 = 0.42;
+const CROSSING_SHADE: f32 = 0.34;
 /// How far that shade reaches, in radii.
 const CROSSING_REACH: f32 = 0.55;
 /// What is seen through a gap: the cloth's own shade on what lies behind.
-const GAP_SHADE: f32 = 0.46;
+const GAP_SHADE: f32 = 0.58;
 /// Makes up for what all shades together take away, so that undyed cotton is white.
-const BRIGHTNESS: f32 = 1.13;
+const BRIGHTNESS: f32 = 1.20;
 /// How steep a rising yarn looks: its axis is drawn this much higher than wide.
 const RELIEF: f32 = 1.0;
 
