@@ -8,6 +8,7 @@ mod faces;
 mod held;
 mod kernel;
 mod lanes;
+mod passage;
 mod peer;
 mod steps;
 mod tiles;

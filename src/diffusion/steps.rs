@@ -8,8 +8,9 @@ use bevy::prelude::*;
 use pulp::Simd;
 
 use super::held::Held;
-use super::kernel::{At, Fick, Passage, Take, WeiszZollinger};
+use super::kernel::{At, Take};
 use super::lanes::{Cells, Lanes, Ways};
+use super::passage::{Fick, Law, Passage};
 use super::tiles::{self, Level, Task, Work, flow};
 use super::{Faces, FreeDye};
 use crate::cloth::Cloth;
@@ -36,8 +37,8 @@ pub struct Ground<'a> {
     pub lanes: Lanes,
     /// The cloth.
     pub ways: &'a [Ways],
-    /// φ₀, as a share of the free capacity.
-    pub equilibrium: f64,
+    /// How faces pass dye.
+    pub law: Law,
     /// The kept cells.
     pub held: &'a Held,
 }
@@ -75,7 +76,7 @@ impl State {
 pub struct Steps {
     lanes: Lanes,
     ways: Vec<Ways>,
-    equilibrium: f64,
+    law: Law,
     held: Held,
     state: State,
 }
@@ -90,7 +91,7 @@ impl Steps {
         Steps {
             lanes,
             ways: lanes.ways(cloth, faces, step_h),
-            equilibrium,
+            law: Law::of(equilibrium),
             held: Held::nothing(lanes),
             state: State::new(lanes),
         }
@@ -108,7 +109,7 @@ impl Steps {
         let ground = Ground {
             lanes: self.lanes,
             ways: &self.ways,
-            equilibrium: self.equilibrium,
+            law: self.law,
             held: &self.held,
         };
         self.state.advance(ground, steps as usize);
@@ -178,13 +179,9 @@ impl Work for Ground<'_> {
     }
 
     fn row(&self, task: Task, from: &Level, into: &mut Level) {
-        if self.equilibrium < 1.0 {
-            let passage = WeiszZollinger {
-                equilibrium: self.equilibrium as f32,
-            };
-            self.step(passage, task, from, into);
-        } else {
-            self.step(Fick, task, from, into);
+        match self.law {
+            Law::Fick => self.step(Fick, task, from, into),
+            Law::Slowed(law) => self.step(law, task, from, into),
         }
     }
 }
@@ -253,7 +250,7 @@ mod tests {
             let ground = Ground {
                 lanes,
                 ways: &lanes.ways(cloth, &faces, scenario.process.step_h),
-                equilibrium,
+                law: Law::of(equilibrium),
                 held: &Held::nothing(lanes),
             };
             state.advance(ground, 31);

@@ -15,8 +15,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::kernel::{Passage, Row, Southwards, Take};
+use super::kernel::{Row, Southwards, Take};
 use super::lanes::{Cells, Lanes, Ways};
+use super::passage::Passage;
 
 /// Stages of a wave.
 const WAVE: usize = 16;

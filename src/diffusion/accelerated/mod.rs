@@ -29,12 +29,12 @@ use bevy::prelude::*;
 use rayon::prelude::*;
 
 use self::binding::{Binding, Mix};
-use self::work::{Judge, Law, RatesOf, Stages};
+use self::work::{Judge, RatesOf, Stages};
 use super::Faces;
 use crate::cloth::Cloth;
 use crate::diffusion::held::Held;
-use crate::diffusion::kernel::WeiszZollinger;
 use crate::diffusion::lanes::{Cells, LANES, Lanes, Ways, unpack_row};
+use crate::diffusion::passage::Law;
 use crate::diffusion::tiles::{self, Level};
 
 /// What the process does while a leap lasts.
@@ -127,20 +127,13 @@ impl Leap {
                 Vec::new()
             }
         };
-        let law = if chemistry.equilibrium < 1.0 {
-            Law::Slowed(WeiszZollinger {
-                equilibrium: chemistry.equilibrium as f32,
-            })
-        } else {
-            Law::Fick
-        };
         let mut leap = Leap {
             stiffness: bound.sharp + binds,
             exchange: (bound.rough / 2.0).max(binds),
             a: [room(), room(), room()],
             lanes,
             ways,
-            law,
+            law: Law::of(chemistry.equilibrium),
             binding,
             tolerance: chemistry.tolerance,
             span: 0..0,

@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::binding::{Binding, KeptPore, Mix, Pores};
 use crate::diffusion::held::{Held, HeldCell};
-use crate::diffusion::kernel::{At, Fick, Passage, Take, WeiszZollinger};
+use crate::diffusion::kernel::{At, Take};
 use crate::diffusion::lanes::{Cells, LANES, Lanes, Ways};
+use crate::diffusion::passage::{Fick, Law, Passage};
 use crate::diffusion::tiles::{Level, Task, Work, flow};
 use pulp::Simd;
 
@@ -15,16 +16,6 @@ use pulp::Simd;
 /// Ahead of the dye the numbers grow ever smaller, and processors are a hundred times slower with
 /// the smallest of all (subnormal) than with any other.
 pub const NOTHING: f32 = 1e-24;
-
-/// How faces pass dye.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
-    /// Fick's law. Rates are proportional to differences, so the rate at a stage is the rate at the
-    /// beginning and that of the change since then.
-    Fick,
-    /// Fick's law, slowed down where there is much dye.
-    Slowed(WeiszZollinger),
-}
 
 /// The stages of a leap.
 pub struct Stages<'a> {
