@@ -24,7 +24,7 @@ impl Plugin for AdsorptionPlugin {
                     .in_set(DyeSet::Adsorption)
                     .run_if(|experiment: Res<TheExperiment>| {
                         let scenario = &experiment.scenario;
-                        scenario.adsorption.is_some() && scenario.solver() == Solver::Explicit
+                        scenario.adsorption.is_some() && scenario.process.solver == Solver::Explicit
                     }),
             );
     }
@@ -258,12 +258,12 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         Some(_) => cloth.grid.len(),
         None => 0,
     };
-    if cells > 0 && experiment.scenario.solver() == Solver::Explicit {
+    if cells > 0 && experiment.scenario.process.solver == Solver::Explicit {
         commands.insert_resource(Capacities::of(&cloth));
     }
     commands.insert_resource(BoundDye {
         amount: vec![0.0; cells],
-        carry: match experiment.scenario.solver() {
+        carry: match experiment.scenario.process.solver {
             Solver::Explicit => vec![0.0; cells],
             Solver::Accelerated => Vec::new(),
         },

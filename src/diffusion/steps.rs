@@ -61,7 +61,12 @@ impl State {
             brought.resize(ground.held.rim.len(), 0.0);
         }
         let ([c0, c1], [r0, r1], [b0, b1]) = (&mut self.c, &mut self.carry, &mut self.brought);
-        let level = |free, bound, held| Level { free, bound, held };
+        let level = |free, bound, held| Level {
+            free,
+            bound,
+            held,
+            brought: &mut [],
+        };
         tiles::pass(&ground, steps, [level(c0, r0, b0), level(c1, r1, b1)]);
         if steps % 2 == 1 {
             self.c.swap(0, 1);

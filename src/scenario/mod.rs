@@ -108,16 +108,6 @@ impl Scenario {
         self.supply.iter().any(is_bath)
     }
 
-    /// The solver that computes the process. A bath, which takes a part of what is missing in every
-    /// step, is for the explicit one alone.
-    pub fn solver(&self) -> Solver {
-        if self.has_baths() {
-            Solver::Explicit
-        } else {
-            self.process.solver
-        }
-    }
-
     /// Every pattern that the scenario names, each with its place.
     pub fn patterns(&self) -> Vec<(&Pattern, Checker)> {
         let at = Checker::root();
