@@ -118,18 +118,6 @@ impl Held {
         }
     }
 
-    /// What flows into all of them in a step: at the beginning, and at the end.
-    pub fn inflow(&self) -> (f64, f64) {
-        let all = || self.rim.iter().chain(&self.deep);
-        let sum = |rate: fn(&HeldCell) -> f64| all().map(|c| c.capacity * rate(c)).sum();
-        (sum(|c| c.rate), sum(|c| c.rate_after))
-    }
-
-    /// What flows in a step into those that are not followed.
-    pub fn deep_inflow(&self) -> f64 {
-        self.deep.iter().map(|c| c.capacity * c.rate).sum()
-    }
-
     /// Lets the next leap begin.
     pub fn go_on(&mut self) {
         for cell in self.rim.iter_mut().chain(&mut self.deep) {

@@ -107,8 +107,8 @@ impl Steps {
         self.held = Held::new(self.lanes, &self.ways, kept, true);
     }
 
-    /// Takes steps. Returns what supply brought to the kept cells.
-    pub fn take(&mut self, dye: &mut FreeDye, steps: u64) -> f64 {
+    /// Takes steps, and books what supply brought to the kept cells, or took away.
+    pub fn take(&mut self, dye: &mut FreeDye, steps: u64, ledger: &mut Ledger) {
         self.lanes.pack(&dye.concentration, &mut self.state.c[0]);
         self.lanes.pack(&dye.carry, &mut self.state.carry[0]);
         let ground = Ground {
@@ -120,8 +120,9 @@ impl Steps {
         self.state.advance(ground, steps as usize);
         self.lanes.unpack(&self.state.c[0], &mut dye.concentration);
         self.lanes.unpack(&self.state.carry[0], &mut dye.carry);
-        let brought = self.state.brought[0].iter().zip(&self.held.rim);
-        brought.map(|(brought, cell)| brought * cell.capacity).sum()
+        for (brought, cell) in self.state.brought[0].iter().zip(&self.held.rim) {
+            ledger.book(brought * cell.capacity);
+        }
     }
 }
 
@@ -144,7 +145,7 @@ pub(super) fn many_steps(
         let until = clock.until.min(supplies.next_change(clock.step));
         (until - clock.step).min(LONGEST)
     };
-    ledger.book(steps.take(&mut dye, clock.stride));
+    steps.take(&mut dye, clock.stride, &mut ledger);
 }
 
 /// Concentrations below this round to nothing: see [`explicit`](super::explicit).

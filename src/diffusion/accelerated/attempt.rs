@@ -9,7 +9,6 @@ use super::rates::{Judge, RatesOf};
 use super::turns::Turns;
 use super::work::Stages;
 use super::{Leap, baths, limiter, rkl2};
-use crate::diffusion::held::HeldCell;
 use crate::diffusion::lanes::{Cells, LANES};
 use crate::diffusion::passage::Law;
 use crate::diffusion::tiles::{self, Level};
@@ -22,7 +21,7 @@ const CALMED: u64 = 100;
 
 /// The largest root mean square of the estimated errors, in tolerances, of a strict process. A bath may
 /// do the same in every cell of the cloth, and so may err there. Of plain steps only moments err.
-const RMS: f64 = 1.0 / 16.0;
+const RMS: f64 = 1.0 / 24.0;
 const RMS_OF_PLAIN: f64 = 1.0 / 8.0;
 
 /// How a leap came out.
@@ -65,10 +64,7 @@ impl Leap {
         self.stages(&mixes);
         self.evaluations += mixes.len() as u64;
         let outcome = self.finish(h, is_plain);
-        let flowed: f64 = self.flowed[0].iter().sum();
-        self.taken = flowed + h * self.held.deep_inflow() + self.clipped;
         self.booked = [0.0; 2];
-        self.bound = self.kept_bound();
         self.brought = baths::total(&self.given[0]);
         outcome
     }
@@ -199,18 +195,6 @@ impl Leap {
             worst: worst / self.tolerance,
             rms: rms / most_rms / self.tolerance,
             beyond: f64::from(beyond) / self.tolerance,
-        }
-    }
-
-    /// What kept cells have bound in the leap.
-    fn kept_bound(&self) -> f64 {
-        let grown = |cell: &HeldCell| {
-            let at = |a: &[Cells]| f64::from(a[cell.block].0[cell.layer][cell.lane]);
-            at(&self.a[1]) - at(&self.a[0])
-        };
-        match self.binding {
-            Some(_) => self.held.rim.iter().map(grown).sum(),
-            None => 0.0,
         }
     }
 

@@ -146,11 +146,17 @@ impl Baths {
     pub fn soaking(&self, error: f64, binds: f64) -> u64 {
         let e = std::f64::consts::E;
         let parts = f64::from(self.parts);
-        let (least, most) = self.shares().fold((1.0, 0.0), |(least, most), share| {
+        // Fibre binds at all rates up to its own, for it has ever less room.
+        let none = if binds > 0.0 {
+            (0.0, binds / parts)
+        } else {
+            (1.0, 0.0)
+        };
+        let (least, most) = self.shares().fold(none, |(least, most), share| {
             (f64::min(least, share), f64::max(most, share))
         });
         // The expression is largest at β = 2e²·error, and falls to both sides.
-        let slowest = (2.0 * e * e * error).clamp(least, most + binds / parts);
+        let slowest = (2.0 * e * e * error).clamp(least, most);
         let needed = libm::log(slowest / (2.0 * e * error)) / slowest;
         (needed / parts).ceil().max(0.0) as u64
     }

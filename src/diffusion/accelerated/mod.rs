@@ -11,10 +11,15 @@
 //! The same cubic gives the moments within a leap ([`moments`]), so frames never shorten one, and
 //! however many there are the process is the same.
 //!
-//! **Conservation.** Stages are sums of flows that cross a face both ways ([`kernel`](super::kernel)); what flows
-//! into kept cells is followed with them ([`held`](super::held)) and booked, and so is what baths bring ([`baths`]). **Bounds.** Concentrations that
-//! leave 0…1 by more than a tenth of the tolerance shorten the leap; what is left of rounding is put
-//! right without loss ([`limiter`]), or, where the whole cloth is full, taken out and booked.
+//! Where there are baths, which may do the same in every cell, errors count in the root mean square
+//! as well, and so do those of the moments between where a cell has bound all it can ([`turns`]).
+//!
+//! **Conservation.** Stages are sums of flows that cross a face both ways
+//! ([`kernel`](super::kernel)); what flows into kept cells is followed with them
+//! ([`held`](super::held)) and booked, and so is what baths bring ([`baths`]). **Bounds.**
+//! Concentrations that leave 0…1 by more than a tenth of the tolerance shorten the leap; what is left of
+//! rounding is put right without loss ([`limiter`]), or, where the whole cloth is full, taken out and
+//! booked.
 
 mod attempt;
 mod baths;
@@ -62,7 +67,8 @@ pub struct Leap {
     law: Law,
     binding: Option<Binding>,
     tolerance: f64,
-    /// Whether errors count also in the root mean square, and those of the moments between.
+    /// Whether errors count in the root mean square as well, and where cells turn: where there are baths
+    /// at any time.
     strict: bool,
     /// The largest rate, per step: of diffusion, and in all.
     spreads: f64,
@@ -82,7 +88,7 @@ pub struct Leap {
     /// What flowed into each kept cell: at the last stage, and room for another.
     flowed: [Vec<f64>; 2],
     baths: Option<Baths>,
-    /// s where dye flows; empty where there are no baths.
+    /// c once the baths have acted; empty where there are none.
     soaked: Vec<Cells>,
     /// What they gave and took in each block: at the last stage, and room for another.
     given: [Vec<Given>; 2],
@@ -90,10 +96,6 @@ pub struct Leap {
     soaking: u64,
     /// What had to be taken out of the cloth at the end of the leap, for it had no room.
     clipped: f64,
-    /// What flowed into all kept cells by diffusion (and was clipped) in the whole leap.
-    taken: f64,
-    /// What they bound in the whole leap.
-    bound: f64,
     /// What baths gave and took in the whole leap.
     brought: Given,
     /// What is in the ledger already of what all supply gave and took.
@@ -158,9 +160,7 @@ impl Leap {
             given: [Vec::new(), Vec::new()],
             soaking: 0,
             clipped: 0.0,
-            taken: 0.0,
             brought: [0.0; 2],
-            bound: 0.0,
             booked: [0.0; 2],
             next: 1,
             evaluations: 0,
@@ -235,7 +235,8 @@ impl Leap {
         if self.binding.is_some() {
             self.lanes.pack(bound, &mut self.a[1]);
         }
-        let all = self.binding.is_some();
+        // What flows from one kept cell to another stays what it is only where rates are of changes.
+        let all = self.binding.is_some() || self.law != Law::Fick;
         let kept = kept.iter().map(|(i, _)| *i as usize);
         self.held = Held::new(self.lanes, &self.ways, kept, all);
         self.flowed = [0, 1].map(|_| vec![0.0; self.held.rim.len()]);

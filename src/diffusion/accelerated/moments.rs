@@ -65,26 +65,15 @@ impl Leap {
             .collect();
         // In order, so that no number of threads changes the sums.
         let rows = supplied.into_iter().fold([0.0; 2], plus);
-        let mut supplied = if self.strict {
-            plus(rows, [0.0, cubic.y1 * self.clipped])
-        } else {
-            [self.to_kept(t, cubic), 0.0]
-        };
+        let mut supplied = plus(rows, [0.0, cubic.y1 * self.clipped]);
         if let Some(baths) = &self.baths {
             let [first, last] = baths.rate;
             let brought = [0, 1].map(|i| cubic.at(self.brought[i], first[i], last[i]));
             supplied = plus(supplied, brought);
         }
-        ledger.book(supplied[0] - self.booked[0]);
-        ledger.book(self.booked[1] - supplied[1]);
+        let [gave, took] = [0, 1].map(|i| supplied[i] - self.booked[i]);
+        ledger.book_apart(gave, took);
         self.booked = supplied;
-    }
-
-    /// What supply has brought to all kept cells together.
-    fn to_kept(&self, t: f64, cubic: Cubic) -> f64 {
-        let (first, last) = self.held.inflow();
-        let flowed = cubic.rate0 * first + cubic.rate1 * last + cubic.y1 * self.taken;
-        t * self.bound - flowed
     }
 
     /// A row at the share `t` of the leap.
@@ -95,7 +84,7 @@ impl Leap {
             (self.c[1][row.clone()].to_vec(), bound.to_vec())
         } else {
             let bound = self.bound_at(y, t);
-            (self.free_at(y, t, cubic, &bound), bound)
+            (self.free_at(y, cubic, &bound), bound)
         };
         let ways = &self.ways[row.clone()];
         let mut supplied = [0.0; 2];
@@ -138,9 +127,6 @@ impl Leap {
             return Vec::new();
         };
         let row = y * self.lanes.blocks..(y + 1) * self.lanes.blocks;
-        if !self.strict {
-            return on_line(&self.a, row, t);
-        }
         let h = (self.span.end - self.span.start) as f64;
         let grown = |place: Place, rates: [f32; 2], kept: bool| {
             let at = |cells: &[Cells]| cells[place.0].0[place.1][place.2];
@@ -174,7 +160,7 @@ impl Leap {
     }
 
     /// Concentrations in a row: what is free where the total follows a curve and so much is bound.
-    fn free_at(&self, y: usize, t: f64, cubic: Cubic, bound: &[Cells]) -> Vec<Cells> {
+    fn free_at(&self, y: usize, cubic: Cubic, bound: &[Cells]) -> Vec<Cells> {
         let first = y * self.lanes.blocks;
         let now = |in_row: usize| {
             let b = first + in_row;
@@ -193,11 +179,7 @@ impl Leap {
                         let all = at(&self.a[1][b]) - before;
                         let grown = at(&bound[in_row]) - before;
                         let per_capacity = self.ways[b].per_capacity[l][i];
-                        c += if self.strict {
-                            (cubic.y1 as f32 * all - grown) * per_capacity
-                        } else {
-                            (cubic.y1 - t) as f32 * all * per_capacity
-                        };
+                        c += (cubic.y1 as f32 * all - grown) * per_capacity;
                     }
                     cells.0[l][i] += c;
                 }

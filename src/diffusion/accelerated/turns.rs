@@ -2,8 +2,8 @@
 //!
 //! Dye that binds at its own rate, and dye that goes with its limit, change smoothly, and so a cubic
 //! tells their moments. Where a cell meets its limit within a leap it turns sharply: it bound share·φ a
-//! step before, and next to nothing after. The cubic rounds the turn off, by an eighth at most of how
-//! much the slope changes over the leap.
+//! step before, and next to nothing after. The cubic rounds that off and misses A by a share of what the
+//! cell would have bound in the whole leap, [`ROUNDED_OFF`] at most.
 
 use std::ops::Range;
 
@@ -14,6 +14,9 @@ use super::moments::Cubic;
 use crate::diffusion::kernel::At;
 use crate::diffusion::lanes::{Cells, LANES};
 use crate::scenario::Isotherm;
+
+/// By how much the cubic misses a turn: most where the turn is at one end.
+const ROUNDED_OFF: f64 = 4.0 / 27.0;
 
 /// A cell: its block, layer and lane.
 pub type Place = (usize, usize, usize);
@@ -77,7 +80,7 @@ pub fn between(t: f64, h: f64, all: f64, [early, late]: [f32; 2], turns: bool) -
 pub fn smooth_for(binding: &Binding, error: f64) -> u64 {
     match binding.isotherm {
         Isotherm::Saturating { .. } => u64::MAX,
-        _ => (8.0 * error / f64::from(binding.share)) as u64,
+        _ => (error / (ROUNDED_OFF * f64::from(binding.share))) as u64,
     }
 }
 
@@ -104,7 +107,7 @@ impl Turns<'_> {
             a: self.a.map(|a| &a[row.clone()]),
             v_u: &self.binding.capacity[row.clone()],
             v_d: &self.binding.fibre[row],
-            share: (self.steps / 8.0) as f32 * self.binding.share,
+            most: (ROUNDED_OFF * self.steps) as f32 * self.binding.share,
             errors: &mut errors,
         });
         errors
@@ -117,7 +120,8 @@ struct TurnsOfRow<'a> {
     a: [&'a [Cells]; 2],
     v_u: &'a [Cells],
     v_d: &'a [Cells],
-    share: f32,
+    /// The error where c is 1.
+    most: f32,
     errors: &'a mut [Cells],
 }
 
@@ -142,8 +146,7 @@ impl WithSimd for TurnsOfRow<'_> {
                         simd.select_f32s(is, one, zero)
                     };
                     let turns = simd.abs_f32s(simd.sub_f32s(at_limit(0), at_limit(1)));
-                    let most =
-                        simd.mul_f32s(simd.splat_f32s(self.share), simd.max_f32s(c[0], c[1]));
+                    let most = simd.mul_f32s(simd.splat_f32s(self.most), simd.max_f32s(c[0], c[1]));
                     *at.of_mut::<S>(self.errors) = simd.mul_f32s(turns, most);
                 }
             }
