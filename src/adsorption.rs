@@ -27,7 +27,7 @@ impl Plugin for AdsorptionPlugin {
                     .in_set(DyeSet::Adsorption)
                     .run_if(|experiment: Res<TheExperiment>| {
                         let scenario = &experiment.scenario;
-                        scenario.adsorption.is_some() && scenario.solver() == Solver::Explicit
+                        scenario.adsorption.is_some() && scenario.process.solver == Solver::Explicit
                     }),
             );
     }
@@ -265,7 +265,7 @@ fn prepare(
     let scenario = &experiment.scenario;
     let (binds, explicit) = (
         scenario.adsorption.is_some(),
-        scenario.solver() == Solver::Explicit,
+        scenario.process.solver == Solver::Explicit,
     );
     if binds && explicit {
         commands.insert_resource(Capacities::of(&cloth));

@@ -29,7 +29,11 @@ impl Plugin for SupplyPlugin {
         app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
             .add_systems(
                 DyeStep,
-                (bring, soak.run_if(there_are_baths))
+                (
+                    bring,
+                    // Where a run covers many steps the solver itself lets the baths act.
+                    soak.run_if(there_are_baths.and_then(resource_exists::<Conductances>)),
+                )
                     .chain()
                     .in_set(SupplySystems)
                     .in_set(DyeSet::Supply),
@@ -54,13 +58,46 @@ pub struct Supplies {
     done: usize,
     holds: Vec<Hold>,
     baths: Vec<Bath>,
-    /// What is kept now, in the order of the cells, and the step until which that is known.
+    /// What is kept now, in the order of the cells, and the step until which that holds and baths stay.
     kept: Vec<Cell>,
     kept_until: u64,
+    /// What the baths do now, once someone has asked.
+    soaked: Option<Vec<Soaked>>,
 }
 
 /// A cell's index in a field, and the concentration that is brought to it.
 pub type Cell = (u32, f32);
+
+/// What all baths together do to a cell in (a part of) a step: they make up the share β of what its
+/// concentration lacks of M.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Soaked {
+    /// The cell's index in a field.
+    pub cell: u32,
+    /// β, above 0 and at most [`MOST_SOAKED`].
+    pub share: f32,
+    /// M.
+    pub concentration: f32,
+}
+
+/// The most that baths make up of what is missing, however many there are (β of one is at most a
+/// half): what is left of a concentration must not drown in rounding.
+pub const MOST_SOAKED: f32 = 1.0 - 1.0 / 4096.0;
+
+impl Soaked {
+    /// This, and then another bath on the same cell.
+    fn and_then(self, next: Soaked) -> Self {
+        let [first, second] = [self.share, next.share].map(f64::from);
+        let [from, to] = [self.concentration, next.concentration].map(f64::from);
+        let stays = first * (1.0 - second);
+        let share = stays + second;
+        Soaked {
+            cell: self.cell,
+            share: (share as f32).min(MOST_SOAKED),
+            concentration: ((stays * from + second * to) / share) as f32,
+        }
+    }
+}
 
 /// Something that is given at one moment.
 #[derive(Debug, Clone)]
@@ -106,18 +143,47 @@ impl Supplies {
         held
     }
 
-    /// Whether something is still to be done at `step`: dye to be given, or cells to be kept from here
-    /// on or no longer.
+    /// Whether something is still to be done at `step`: dye to be given, or cells to be kept, or a bath
+    /// to act, from here on or no longer.
     pub fn changes_at(&self, step: u64) -> bool {
         let is_due = |event: &Event| event.at <= step;
         step >= self.kept_until || self.events.get(self.done).is_some_and(is_due)
     }
 
-    /// The next step after `step` where dye is given or something else is kept.
+    /// The next step after `step` where dye is given, something else is kept, or a bath begins or ends.
     pub fn next_change(&self, step: u64) -> u64 {
         let events = self.events[self.done..].iter().map(|event| event.at);
         let later = events.chain([self.kept_until]).filter(|at| *at > step);
         later.min().unwrap_or(u64::MAX)
+    }
+
+    /// What the baths do to each cell in one of `splits` parts of a step, from `step` on, in the order
+    /// of the cells. Where something is kept they do nothing; several act one after the other.
+    pub fn soaked_at(&self, step: u64, splits: u32) -> Vec<Soaked> {
+        let part = 1.0 / splits as f32;
+        let is_on = |bath: &&Bath| bath.from <= step && step < bath.until;
+        let mut soaked = Vec::new();
+        for bath in self.baths.iter().filter(is_on) {
+            let cells = bath.cells.iter().map(|(cell, share)| Soaked {
+                cell: *cell,
+                share: part * share,
+                concentration: bath.concentration,
+            });
+            soaked.extend(cells.filter(|soaked| soaked.share > 0.0));
+        }
+        // The sort leaves equals in their order.
+        soaked.sort_by_key(|soaked| soaked.cell);
+        soaked.dedup_by(|next, first| {
+            let same = next.cell == first.cell;
+            if same {
+                *first = first.and_then(*next);
+            }
+            same
+        });
+        let kept = self.kept_at(step);
+        let is_kept = |cell: u32| kept.binary_search_by_key(&cell, |(kept, _)| *kept).is_ok();
+        soaked.retain(|soaked| !is_kept(soaked.cell));
+        soaked
     }
 
     /// The cells that are kept from `step` on, and the concentrations.
@@ -156,39 +222,35 @@ impl Supplies {
     /// Lets dye in (or out) from the baths during one of `splits` parts of a step, where nothing is
     /// kept. Unlike [`Supplies::bring`] this takes time: it must run once for each part, after it.
     pub fn soak(
-        &self,
+        &mut self,
         step: u64,
         splits: u32,
         cloth: &Cloth,
         dye: &mut FreeDye,
         ledger: &mut Ledger,
     ) {
-        let part = 1.0 / splits as f32;
-        let is_on = |bath: &&Bath| bath.from <= step && step < bath.until;
-        for bath in self.baths.iter().filter(is_on) {
-            // Both lists are in the order of the cells.
-            let mut kept = self.kept.iter().map(|(i, _)| *i).peekable();
-            for (i, share) in &bath.cells {
-                while kept.next_if(|kept| kept < i).is_some() {}
-                if kept.peek() == Some(i) {
-                    continue;
-                }
-                let i = *i as usize;
-                let missing = bath.concentration - dye.concentration[i];
-                let grown = dye.grow(i, part * share * missing);
-                ledger.book(grown * capacity(cloth, i));
-            }
+        let soaked = self.soaked.take();
+        let soaked = soaked.unwrap_or_else(|| self.soaked_at(step, splits));
+        for bath in &soaked {
+            let i = bath.cell as usize;
+            let missing = bath.concentration - dye.concentration[i];
+            let grown = dye.grow(i, bath.share * missing);
+            ledger.book(grown * capacity(cloth, i));
         }
+        self.soaked = Some(soaked);
     }
 
-    /// Finds what is kept at a step.
+    /// Finds what is kept at a step, and forgets what baths did before it.
     fn find_kept(&mut self, step: u64) {
         if step < self.kept_until {
             return;
         }
         self.kept = self.kept_at(step).into_owned();
-        let changes = self.holds.iter().flat_map(|hold| [hold.from, hold.until]);
-        self.kept_until = changes
+        self.soaked = None;
+        let holds = self.holds.iter().flat_map(|hold| [hold.from, hold.until]);
+        let baths = self.baths.iter().flat_map(|bath| [bath.from, bath.until]);
+        self.kept_until = holds
+            .chain(baths)
             .filter(|change| *change > step)
             .min()
             .unwrap_or(u64::MAX);
@@ -253,7 +315,7 @@ fn there_are_baths(supplies: Res<Supplies>) -> bool {
 }
 
 fn soak(
-    supplies: Res<Supplies>,
+    mut supplies: ResMut<Supplies>,
     clock: Res<ProcessClock>,
     cloth: Res<Cloth>,
     mut dye: ResMut<FreeDye>,

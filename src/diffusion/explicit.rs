@@ -18,41 +18,11 @@
 //! carry, which is at most half a last bit of c; and rounding is monotone. So 0 ≤ c ≤ 1 holds in
 //! float32 without any clamp.
 
+use pulp::Scalar;
 use rayon::prelude::*;
 
 use super::Conductances;
-
-/// How the face between two cells passes dye.
-trait Passage: Copy + Sync {
-    /// The amount that passes to a cell with concentration `here` from one with `there`.
-    fn flow(self, conductance: f32, here: f32, there: f32) -> f32;
-}
-
-/// ρ = 1: Fick's law alone.
-#[derive(Clone, Copy)]
-struct Fick;
-
-impl Passage for Fick {
-    #[inline(always)]
-    fn flow(self, conductance: f32, here: f32, there: f32) -> f32 {
-        conductance * (there - here)
-    }
-}
-
-/// ρ = min(1, φ₀/c̄) with c̄ the mean of both sides (Weisz–Zollinger, paper D eq 4; model section 2).
-#[derive(Clone, Copy)]
-struct WeiszZollinger {
-    equilibrium: f32,
-}
-
-impl Passage for WeiszZollinger {
-    #[inline(always)]
-    fn flow(self, conductance: f32, here: f32, there: f32) -> f32 {
-        let mean = 0.5 * (here + there);
-        // At c̄ = 0 the quotient is infinite and the minimum 1.
-        conductance * (self.equilibrium / mean).min(1.0) * (there - here)
-    }
-}
+use super::passage::{Fick, Law, Passage};
 
 /// Concentrations below this round to nothing.
 ///
@@ -90,13 +60,9 @@ pub fn step(
     carry: &mut [f32],
     next: &mut [f32],
 ) {
-    if equilibrium < 1.0 {
-        let passage = WeiszZollinger {
-            equilibrium: equilibrium as f32,
-        };
-        advance(conductances, passage, now, carry, next);
-    } else {
-        advance(conductances, Fick, now, carry, next);
+    match Law::of(equilibrium) {
+        Law::Fick => advance(conductances, Fick, now, carry, next),
+        Law::Slowed(law) => advance(conductances, law, now, carry, next),
     }
 }
 
@@ -208,9 +174,11 @@ fn advance_row<P: Passage>(row: &Row, passage: P, carry: &mut [f32], next: &mut 
     let (next, carry) = (&mut next[1..][..m], &mut carry[1..][..m]);
     for x in 0..m {
         let c = here[x];
-        let across = passage.flow(west_g[x], c, west[x]) + passage.flow(east_g[x], c, east[x]);
-        let down = passage.flow(north_g[x], c, north[x]) + passage.flow(south_g[x], c, south[x]);
-        let beside = passage.flow(beside_g[x], c, beside[x]);
+        let across = passage.flow(Scalar, west_g[x], c, west[x])
+            + passage.flow(Scalar, east_g[x], c, east[x]);
+        let down = passage.flow(Scalar, north_g[x], c, north[x])
+            + passage.flow(Scalar, south_g[x], c, south[x]);
+        let beside = passage.flow(Scalar, beside_g[x], c, beside[x]);
         let change = per_capacity[x] * ((across + down) + beside);
         (next[x], carry[x]) = add(c, carry[x], change);
     }
@@ -221,16 +189,16 @@ impl Row<'_> {
     fn change_at_end<P: Passage>(&self, passage: P, x: usize) -> f32 {
         let c = self.here[x];
         let west = match x.checked_sub(1) {
-            Some(w) => passage.flow(self.east_g[w], c, self.here[w]),
+            Some(w) => passage.flow(Scalar, self.east_g[w], c, self.here[w]),
             None => 0.0,
         };
         let east = match self.here.get(x + 1) {
-            Some(east) => passage.flow(self.east_g[x], c, *east),
+            Some(east) => passage.flow(Scalar, self.east_g[x], c, *east),
             None => 0.0,
         };
-        let down = passage.flow(self.north_g[x], c, self.north[x])
-            + passage.flow(self.south_g[x], c, self.south[x]);
-        let beside = passage.flow(self.beside_g[x], c, self.beside[x]);
+        let down = passage.flow(Scalar, self.north_g[x], c, self.north[x])
+            + passage.flow(Scalar, self.south_g[x], c, self.south[x]);
+        let beside = passage.flow(Scalar, self.beside_g[x], c, self.beside[x]);
         self.per_capacity[x] * (((west + east) + down) + beside)
     }
 }

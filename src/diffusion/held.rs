@@ -99,13 +99,15 @@ impl Held {
 
     /// All kept cells of row `y`.
     pub fn in_row(&self, y: usize) -> impl Iterator<Item = &HeldCell> {
+        let rim = self.above[y]..self.above[y + 1];
+        self.rim[rim].iter().chain(self.deep_in_row(y))
+    }
+
+    /// Those of row `y` that are not followed.
+    pub fn deep_in_row(&self, y: usize) -> impl Iterator<Item = &HeldCell> {
         let row = y * self.blocks..(y + 1) * self.blocks;
-        let of = move |cells: &'_ [HeldCell]| {
-            let at = |block: usize| cells.partition_point(|cell| cell.block < block);
-            at(row.start)..at(row.end)
-        };
-        let (rim, deep) = (of(&self.rim), of(&self.deep));
-        self.rim[rim].iter().chain(&self.deep[deep])
+        let at = |block: usize| self.deep.partition_point(|cell| cell.block < block);
+        self.deep[at(row.start)..at(row.end)].iter()
     }
 
     /// Takes the rates at the end of a leap out of a field of rates: kept cells do not change.
@@ -114,18 +116,6 @@ impl Held {
             let rate = &mut rates[cell.block].0[cell.layer][cell.lane];
             cell.rate_after = f64::from(std::mem::replace(rate, 0.0));
         }
-    }
-
-    /// What flows into all of them in a step: at the beginning, and at the end.
-    pub fn inflow(&self) -> (f64, f64) {
-        let all = || self.rim.iter().chain(&self.deep);
-        let sum = |rate: fn(&HeldCell) -> f64| all().map(|c| c.capacity * rate(c)).sum();
-        (sum(|c| c.rate), sum(|c| c.rate_after))
-    }
-
-    /// What flows in a step into those that are not followed.
-    pub fn deep_inflow(&self) -> f64 {
-        self.deep.iter().map(|c| c.capacity * c.rate).sum()
     }
 
     /// Lets the next leap begin.

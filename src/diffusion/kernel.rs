@@ -13,42 +13,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::lanes::{Cells, LANES, Ways};
-
-/// How the face between two cells passes dye.
-pub trait Passage: Copy + Sync {
-    /// The amount that passes to a cell with concentration `here` from one with `there`.
-    fn flow<S: Simd>(self, simd: S, g: S::f32s, here: S::f32s, there: S::f32s) -> S::f32s;
-}
-
-/// ρ = 1: Fick's law alone.
-#[derive(Debug, Clone, Copy)]
-pub struct Fick;
-
-impl Passage for Fick {
-    #[inline(always)]
-    fn flow<S: Simd>(self, simd: S, g: S::f32s, here: S::f32s, there: S::f32s) -> S::f32s {
-        simd.mul_f32s(g, simd.sub_f32s(there, here))
-    }
-}
-
-/// ρ = min(1, φ₀/c̄) with c̄ the mean of both sides (Weisz–Zollinger, paper D eq 4; model section 2).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WeiszZollinger {
-    /// φ₀, as a share of the free capacity.
-    pub equilibrium: f32,
-}
-
-impl Passage for WeiszZollinger {
-    #[inline(always)]
-    fn flow<S: Simd>(self, simd: S, g: S::f32s, here: S::f32s, there: S::f32s) -> S::f32s {
-        let mean = simd.mul_f32s(simd.splat_f32s(0.5), simd.add_f32s(here, there));
-        // Where there is no dye the quotient is huge and the minimum 1.
-        let mean = simd.max_f32s(mean, simd.splat_f32s(1e-30));
-        let rho = simd.div_f32s(simd.splat_f32s(self.equilibrium), mean);
-        let rho = simd.min_f32s(rho, simd.splat_f32s(1.0));
-        simd.mul_f32s(simd.mul_f32s(g, rho), simd.sub_f32s(there, here))
-    }
-}
+use super::passage::Passage;
 
 /// Where in a row a vector of cells lies.
 #[derive(Debug, Clone, Copy)]
@@ -247,6 +212,7 @@ impl<P: Passage> WithSimd for Southwards<'_, P> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diffusion::passage::{Fick, Law};
 
     /// Numbers from 0 to 1 without any order.
     fn noise(i: usize) -> f32 {
@@ -298,7 +264,9 @@ mod tests {
 
     #[test]
     fn every_instruction_set_gives_the_same_bytes() {
-        let slowed = WeiszZollinger { equilibrium: 0.3 };
+        let Law::Slowed(slowed) = Law::of(0.3) else {
+            panic!("much dye slows itself down");
+        };
         for blocks in [0..5, 0..2, 1..4, 4..5] {
             let [vectors, cells] = [false, true].map(|one| rates(Fick, blocks.clone(), one));
             assert_eq!(vectors, cells);

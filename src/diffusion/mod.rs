@@ -8,6 +8,7 @@ mod faces;
 mod held;
 mod kernel;
 mod lanes;
+mod passage;
 mod peer;
 mod steps;
 mod tiles;
@@ -261,7 +262,7 @@ fn prepare(
         (adsorption.isotherm, share)
     });
     let step_h = scenario.process.step_h;
-    let solver = scenario.solver();
+    let solver = scenario.process.solver;
     match solver {
         Solver::Explicit => {
             let most = binding.map_or(0.0, |(_, share)| share);
@@ -281,6 +282,7 @@ fn prepare(
             let chemistry = Chemistry {
                 equilibrium: scenario.dye.equilibrium,
                 binding,
+                baths: scenario.has_baths(),
                 tolerance: scenario.process.tolerance,
             };
             let leap = Leap::new(&cloth, &faces, step_h, chemistry);
@@ -322,8 +324,14 @@ fn leap(
     let changed = dye.is_changed() || bound.is_changed() || supplies.is_changed();
     if changed || !leap.covers(clock.step) {
         let kept = supplies.kept_at(clock.step);
-        let kept = kept.iter().map(|(i, _)| *i as usize);
-        leap.begin(clock.step, &dye.concentration, &bound.amount, kept);
+        let soaked = supplies.soaked_at(clock.step, leap.splits());
+        leap.begin(
+            clock.step,
+            &dye.concentration,
+            &bound.amount,
+            &kept,
+            &soaked,
+        );
     }
     if leap.span().end == clock.step {
         // The next change of supply ends a leap, and so does the end of the process.
@@ -334,6 +342,6 @@ fn leap(
     let shown = leap.span().end.min(clock.until);
     clock.stride = shown - clock.step;
     let dye = &mut *dye;
-    let supplied = leap.show(shown, &mut dye.concentration, &mut bound.amount);
-    ledger.book(supplied);
+    let bound = &mut bound.amount;
+    leap.show(shown, &mut dye.concentration, bound, &mut ledger);
 }

@@ -2,6 +2,7 @@
 
 use super::held::Held;
 use super::lanes::{LANES, Lanes, Ways};
+use super::passage::Law;
 use super::steps::{Ground, State};
 use crate::cloth::{Grid, Layer};
 
@@ -50,7 +51,7 @@ impl Peer {
         let ground = Ground {
             lanes: self.lanes,
             ways: &self.ways,
-            equilibrium: 1.0,
+            law: Law::Fick,
             held: &Held::nothing(self.lanes),
         };
         self.state.advance(ground, steps);

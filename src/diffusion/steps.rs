@@ -8,8 +8,9 @@ use bevy::prelude::*;
 use pulp::Simd;
 
 use super::held::Held;
-use super::kernel::{At, Fick, Passage, Take, WeiszZollinger};
+use super::kernel::{At, Take};
 use super::lanes::{Cells, Lanes, Ways};
+use super::passage::{Fick, Law, Passage};
 use super::tiles::{self, Level, Task, Work, flow};
 use super::{Faces, FreeDye};
 use crate::cloth::Cloth;
@@ -36,8 +37,8 @@ pub struct Ground<'a> {
     pub lanes: Lanes,
     /// The cloth.
     pub ways: &'a [Ways],
-    /// φ₀, as a share of the free capacity.
-    pub equilibrium: f64,
+    /// How faces pass dye.
+    pub law: Law,
     /// The kept cells.
     pub held: &'a Held,
 }
@@ -60,7 +61,12 @@ impl State {
             brought.resize(ground.held.rim.len(), 0.0);
         }
         let ([c0, c1], [r0, r1], [b0, b1]) = (&mut self.c, &mut self.carry, &mut self.brought);
-        let level = |free, bound, held| Level { free, bound, held };
+        let level = |free, bound, held| Level {
+            free,
+            bound,
+            held,
+            brought: &mut [],
+        };
         tiles::pass(&ground, steps, [level(c0, r0, b0), level(c1, r1, b1)]);
         if steps % 2 == 1 {
             self.c.swap(0, 1);
@@ -75,7 +81,7 @@ impl State {
 pub struct Steps {
     lanes: Lanes,
     ways: Vec<Ways>,
-    equilibrium: f64,
+    law: Law,
     held: Held,
     state: State,
 }
@@ -90,7 +96,7 @@ impl Steps {
         Steps {
             lanes,
             ways: lanes.ways(cloth, faces, step_h),
-            equilibrium,
+            law: Law::of(equilibrium),
             held: Held::nothing(lanes),
             state: State::new(lanes),
         }
@@ -101,21 +107,22 @@ impl Steps {
         self.held = Held::new(self.lanes, &self.ways, kept, true);
     }
 
-    /// Takes steps. Returns what supply brought to the kept cells.
-    pub fn take(&mut self, dye: &mut FreeDye, steps: u64) -> f64 {
+    /// Takes steps, and books what supply brought to the kept cells, or took away.
+    pub fn take(&mut self, dye: &mut FreeDye, steps: u64, ledger: &mut Ledger) {
         self.lanes.pack(&dye.concentration, &mut self.state.c[0]);
         self.lanes.pack(&dye.carry, &mut self.state.carry[0]);
         let ground = Ground {
             lanes: self.lanes,
             ways: &self.ways,
-            equilibrium: self.equilibrium,
+            law: self.law,
             held: &self.held,
         };
         self.state.advance(ground, steps as usize);
         self.lanes.unpack(&self.state.c[0], &mut dye.concentration);
         self.lanes.unpack(&self.state.carry[0], &mut dye.carry);
-        let brought = self.state.brought[0].iter().zip(&self.held.rim);
-        brought.map(|(brought, cell)| brought * cell.capacity).sum()
+        for (brought, cell) in self.state.brought[0].iter().zip(&self.held.rim) {
+            ledger.book(brought * cell.capacity);
+        }
     }
 }
 
@@ -138,7 +145,7 @@ pub(super) fn many_steps(
         let until = clock.until.min(supplies.next_change(clock.step));
         (until - clock.step).min(LONGEST)
     };
-    ledger.book(steps.take(&mut dye, clock.stride));
+    steps.take(&mut dye, clock.stride, &mut ledger);
 }
 
 /// Concentrations below this round to nothing: see [`explicit`](super::explicit).
@@ -178,13 +185,9 @@ impl Work for Ground<'_> {
     }
 
     fn row(&self, task: Task, from: &Level, into: &mut Level) {
-        if self.equilibrium < 1.0 {
-            let passage = WeiszZollinger {
-                equilibrium: self.equilibrium as f32,
-            };
-            self.step(passage, task, from, into);
-        } else {
-            self.step(Fick, task, from, into);
+        match self.law {
+            Law::Fick => self.step(Fick, task, from, into),
+            Law::Slowed(law) => self.step(law, task, from, into),
         }
     }
 }
@@ -253,7 +256,7 @@ mod tests {
             let ground = Ground {
                 lanes,
                 ways: &lanes.ways(cloth, &faces, scenario.process.step_h),
-                equilibrium,
+                law: Law::of(equilibrium),
                 held: &Held::nothing(lanes),
             };
             state.advance(ground, 31);

@@ -15,8 +15,9 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::kernel::{Passage, Row, Southwards, Take};
+use super::kernel::{Row, Southwards, Take};
 use super::lanes::{Cells, Lanes, Ways};
+use super::passage::Passage;
 
 /// Stages of a wave.
 const WAVE: usize = 16;
@@ -36,6 +37,8 @@ pub struct Level<'a> {
     pub bound: &'a mut [Cells],
     /// What flowed into each of the held cells.
     pub held: &'a mut [f64],
+    /// What baths gave to each block and took from it; empty where there are none.
+    pub brought: &'a mut [[f64; 2]],
 }
 
 /// Rows of two stages that follow each other.
@@ -236,6 +239,7 @@ impl Rows<'_> {
                 free: level.free,
                 bound: level.bound,
                 held: level.held,
+                brought: level.brought,
             }),
         }
     }
@@ -248,15 +252,15 @@ fn split<'a>(work: &impl Work, rows: Rows<'a>, cuts: &[usize]) -> Vec<Rows<'a>> 
     let mut take = |from: usize, to: usize| {
         let held = work.held_above(to) - work.held_above(from);
         [&mut even, &mut odd].map(|level| {
-            let bound = if level.bound.is_empty() {
-                0
-            } else {
-                (to - from) * blocks
-            };
+            let cells = (to - from) * blocks;
+            let unless_empty = |empty: bool| if empty { 0 } else { cells };
+            let bound = unless_empty(level.bound.is_empty());
+            let brought = unless_empty(level.brought.is_empty());
             Level {
-                free: take_front(&mut level.free, (to - from) * blocks),
+                free: take_front(&mut level.free, cells),
                 bound: take_front(&mut level.bound, bound),
                 held: take_front(&mut level.held, held),
+                brought: take_front(&mut level.brought, brought),
             }
         })
     };

@@ -129,16 +129,6 @@ impl Scenario {
         waxed || self.supply.iter().any(is_bath)
     }
 
-    /// The solver that computes the process. A bath, which takes a part of what is missing in every
-    /// step, is for the explicit one alone.
-    pub fn solver(&self) -> Solver {
-        if self.has_baths() {
-            Solver::Explicit
-        } else {
-            self.process.solver
-        }
-    }
-
     /// Every file that the scenario names, each with its place and what is wanted of it.
     pub fn pictures(&self) -> Vec<(&str, Wanted, Checker)> {
         let mut all: Vec<_> = Vec::new();

@@ -18,10 +18,11 @@ use crate::scenario::Isotherm;
 /// How dye binds on a cloth.
 #[derive(Debug, Clone)]
 pub struct Binding {
-    isotherm: Isotherm,
+    /// A_d(φ).
+    pub isotherm: Isotherm,
     settled: Settled,
     /// k, the share of its free dye that a cell binds in a step; or α_d.
-    share: f32,
+    pub share: f32,
     /// In a step dye binds after it has moved, so what binds is a share of c and of how c changes in a
     /// step: 1; or 0 where a step is so long that explicit ones would be split.
     pub moved: f32,
@@ -184,7 +185,7 @@ impl Binding {
 
     /// What is bound of a total once the isotherm is met.
     #[inline(always)]
-    fn settled<S: Simd>(&self, simd: S, u: S::f32s, v_d: S::f32s) -> S::f32s {
+    pub fn settled<S: Simd>(&self, simd: S, u: S::f32s, v_d: S::f32s) -> S::f32s {
         let add = |a, b| simd.add_f32s(a, b);
         let sub = |a, b| simd.sub_f32s(a, b);
         let mul = |a, b| simd.mul_f32s(a, b);

@@ -1,30 +1,22 @@
 //! What one stage of a leap does with one row: dye flows, binds, and is kept where supply holds it.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
 
+use pulp::Simd;
+
+use super::baths::{Baths, Dry, Soak};
 use super::binding::{Binding, KeptPore, Mix, Pores};
 use crate::diffusion::held::{Held, HeldCell};
-use crate::diffusion::kernel::{At, Fick, Passage, Take, WeiszZollinger};
-use crate::diffusion::lanes::{Cells, LANES, Lanes, Ways};
+use crate::diffusion::kernel::{At, Take};
+use crate::diffusion::lanes::{Cells, Lanes, Ways};
+use crate::diffusion::passage::{Fick, Law, Passage};
 use crate::diffusion::tiles::{Level, Task, Work, flow};
-use pulp::Simd;
 
 /// Changes smaller than this are none.
 ///
 /// Ahead of the dye the numbers grow ever smaller, and processors are a hundred times slower with
 /// the smallest of all (subnormal) than with any other.
 pub const NOTHING: f32 = 1e-24;
-
-/// How faces pass dye.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
-    /// Fick's law. Rates are proportional to differences, so the rate at a stage is the rate at the
-    /// beginning and that of the change since then.
-    Fick,
-    /// Fick's law, slowed down where there is much dye.
-    Slowed(WeiszZollinger),
-}
 
 /// The stages of a leap.
 pub struct Stages<'a> {
@@ -38,6 +30,10 @@ pub struct Stages<'a> {
     pub held: &'a Held,
     /// c and, where dye binds, A at the beginning of the leap.
     pub begin: (&'a [Cells], &'a [Cells]),
+    /// s at the beginning: c once the baths have acted.
+    pub soaked: &'a [Cells],
+    /// The baths, if there are any.
+    pub baths: Option<&'a Baths>,
     /// The rate at the beginning of the leap.
     pub first_rate: &'a [Cells],
     /// How dye binds, if it does.
@@ -47,13 +43,14 @@ pub struct Stages<'a> {
 }
 
 /// Mixes the last two stages and their rates, in place.
-struct Combine<'a> {
+struct Combine<'a, B> {
     mix: Mix,
+    soak: B,
     first_rate: &'a [Cells],
     into: &'a mut [Cells],
 }
 
-impl Take for Combine<'_> {
+impl<B: Soak> Take for Combine<'_, B> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, at: At, here: S::f32s, rate: S::f32s) {
         let Mix {
@@ -64,6 +61,8 @@ impl Take for Combine<'_> {
         } = self.mix;
         let first_rate = at.of::<S>(self.first_rate);
         let into = at.of_mut::<S>(self.into);
+        let liquid = self.soak.of_liquid(simd, at, here);
+        let rate = self.soak.eased(simd, at, rate, liquid);
         let last = simd.add_f32s(
             simd.mul_f32s(simd.splat_f32s(mu), here),
             simd.mul_f32s(simd.splat_f32s(nu), *into),
@@ -72,6 +71,7 @@ impl Take for Combine<'_> {
             simd.mul_f32s(simd.splat_f32s(r), rate),
             simd.mul_f32s(simd.splat_f32s(first), first_rate),
         );
+        let rates = self.soak.of_soaked(simd, at, rates);
         *into = without_nothing(simd, simd.add_f32s(last, rates));
     }
 }
@@ -84,8 +84,9 @@ pub fn without_nothing<S: Simd>(simd: S, change: S::f32s) -> S::f32s {
 }
 
 /// Mixes the last two stages and their rates, and divides what cells hold into free and bound.
-struct Bind<'a> {
+struct Bind<'a, B> {
     mix: Mix,
+    soak: B,
     /// Whether rates are those of the changes alone.
     linear: bool,
     first_rate: &'a [Cells],
@@ -107,21 +108,24 @@ struct PoreRow<'a> {
     into: &'a mut [Cells],
 }
 
-impl Take for Bind<'_> {
+impl<B: Soak> Take for Bind<'_, B> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, at: At, _: S::f32s, rate: S::f32s) {
-        let mix = self.mix;
+        let (mix, soak) = (self.mix, self.soak);
         let first_rate = at.of::<S>(self.first_rate);
+        let last = soak.of_liquid(simd, at, at.of::<S>(self.last));
         let rate = if self.linear {
             simd.add_f32s(rate, first_rate)
         } else {
-            rate
+            soak.driven(simd, at, rate)
         };
+        let rate = soak.eased(simd, at, rate, last);
         *at.of_mut::<S>(self.rates) = rate;
-        let last = at.of::<S>(self.last);
         let free = at.of_mut::<S>(self.into);
+        let before = soak.of_liquid(simd, at, *free);
         let Some(row) = &mut self.pores else {
-            *free = without_nothing(simd, mix.of(simd, [last, *free, rate, first_rate]));
+            let mixed = mix.of(simd, [last, before, rate, first_rate]);
+            *free = without_nothing(simd, soak.of_soaked(simd, at, mixed));
             return;
         };
         let bound = at.of_mut::<S>(row.into);
@@ -131,21 +135,13 @@ impl Take for Bind<'_> {
             v_u: at.of::<S>(row.v_u),
             v_d: at.of::<S>(row.v_d),
             last: [last, at.of::<S>(row.last)],
-            before: [*free, *bound],
+            before: [before, *bound],
             rate,
             first_rate,
         };
-        [*free, *bound] = row.binding.stage(simd, mix, pores);
-    }
-}
-
-/// The rates alone.
-struct Rates<'a>(&'a mut [Cells]);
-
-impl Take for Rates<'_> {
-    #[inline(always)]
-    fn take<S: Simd>(&mut self, _: S, at: At, _: S::f32s, rate: S::f32s) {
-        *at.of_mut::<S>(self.0) = rate;
+        let [change, grown] = row.binding.stage(simd, mix, pores);
+        *free = soak.of_soaked(simd, at, change);
+        *bound = grown;
     }
 }
 
@@ -163,11 +159,18 @@ impl Work for Stages<'_> {
     }
 
     fn row(&self, task: Task, from: &Level, into: &mut Level) {
-        match (self.law, self.binding) {
-            (Law::Fick, None) => self.spread(task, from, into),
-            (Law::Fick, Some(_)) => self.spread_and_bind(Fick, task, from, into),
-            (Law::Slowed(law), _) => self.spread_and_bind(law, task, from, into),
-        }
+        let Some(baths) = self.baths else {
+            return self.advance(Dry, task, from, into);
+        };
+        let row = self.whole(task.y);
+        let first = row.start + task.blocks.start;
+        let top = task.top * self.lanes.blocks;
+        let local = first - top..row.start + task.blocks.end - top;
+        let (change, brought) = (&from.free[local.clone()], &from.brought[local.clone()]);
+        let into_brought = &mut into.brought[local];
+        baths.follow(self.mixes[task.stage], first, change, brought, into_brought);
+        let bath = baths.row(row.clone(), &self.begin.0[row]);
+        self.advance(bath, task, from, into);
     }
 }
 
@@ -186,8 +189,16 @@ impl Stages<'_> {
             .map(move |(i, cell)| (i - above, cell.block - row, cell))
     }
 
+    fn advance<B: Soak>(&self, soak: B, task: Task, from: &Level, into: &mut Level) {
+        match (self.law, self.binding) {
+            (Law::Fick, None) => self.spread(soak, task, from, into),
+            (Law::Fick, Some(_)) => self.spread_and_bind(soak, Fick, task, from, into),
+            (Law::Slowed(law), _) => self.spread_and_bind(soak, law, task, from, into),
+        }
+    }
+
     /// Fick's law and nothing else: all in one loop.
-    fn spread(&self, mut task: Task, from: &Level, into: &mut Level) {
+    fn spread<B: Soak>(&self, soak: B, mut task: Task, from: &Level, into: &mut Level) {
         let mix = self.mixes[task.stage];
         let here = self.whole(task.y - task.top);
         let take = Combine {
@@ -196,6 +207,7 @@ impl Stages<'_> {
                 first: mix.rate + mix.first,
                 ..mix
             },
+            soak,
             first_rate: &self.first_rate[self.whole(task.y)],
             into: &mut into.free[here.clone()],
         };
@@ -213,8 +225,9 @@ impl Stages<'_> {
     }
 
     /// Everything else.
-    fn spread_and_bind<P: Passage>(
+    fn spread_and_bind<B: Soak, P: Passage>(
         &self,
+        soak: B,
         passage: P,
         mut task: Task,
         from: &Level,
@@ -237,6 +250,7 @@ impl Stages<'_> {
         let rates = std::mem::take(&mut task.spare);
         let take = Bind {
             mix,
+            soak,
             linear,
             first_rate: &self.first_rate[row.clone()],
             last: &from.free[local.clone()],
@@ -261,7 +275,7 @@ impl Stages<'_> {
             task.top = *rows.start();
             let around = rows.flat_map(|y| {
                 let change = &from.free[self.whole(y + local.start / self.lanes.blocks - task.y)];
-                let begin = &self.begin.0[self.whole(y)];
+                let begin = &self.soaked[self.whole(y)];
                 begin.iter().zip(change).map(|(c, d)| plus(c, d))
             });
             let around: Vec<Cells> = around.collect();
@@ -298,99 +312,4 @@ fn plus(a: &Cells, b: &Cells) -> Cells {
         *a += b;
     }
     sum
-}
-
-/// The rates of a field of concentrations, and what they say of the leap that led there.
-pub struct RatesOf<'a> {
-    /// The layout.
-    pub lanes: Lanes,
-    /// The cloth.
-    pub ways: &'a [Ways],
-    /// How faces pass dye.
-    pub law: Law,
-    /// The leap, if there was one.
-    pub judge: Option<&'a Judge<'a>>,
-}
-
-/// Estimates the error of a leap, see [`accelerated`](super).
-pub struct Judge<'a> {
-    /// c at the beginning.
-    pub begin: &'a [Cells],
-    /// The rate at the beginning.
-    pub first_rate: &'a [Cells],
-    /// Where dye binds, the change of the total; else that of c counts.
-    pub change: Option<&'a [Cells]>,
-    /// The steps of the leap.
-    pub steps: f64,
-    /// The kept cells, which do not count.
-    pub held: &'a Held,
-    /// The largest error so far, as the bits of a float32: of positive numbers they keep the order.
-    pub worst: AtomicU32,
-}
-
-impl Judge<'_> {
-    /// Judges row `y` by its concentrations and rates at the end.
-    fn row(&self, y: usize, end: &[Cells], rates: &mut [Cells]) {
-        let row = y * end.len()..(y + 1) * end.len();
-        let mut kept = Vec::new();
-        for cell in self.held.in_row(y) {
-            let rate = &mut rates[cell.block - row.start].0[cell.layer][cell.lane];
-            kept.push((cell, std::mem::replace(rate, 0.0)));
-        }
-        let third = (self.steps / 3.0) as f32;
-        let mut worst = [0.0_f32; LANES];
-        let begin = &self.begin[row.clone()];
-        let change = self.change.map_or(end, |change| &change[row.clone()]);
-        let fields = begin.iter().zip(change).zip(&self.first_rate[row.clone()]);
-        for (((begin, end), first), last) in fields.zip(&*rates) {
-            for l in 0..2 {
-                for (i, worst) in worst.iter_mut().enumerate() {
-                    let at = |cells: &Cells| cells.0[l][i];
-                    let change = if self.change.is_some() {
-                        at(end)
-                    } else {
-                        at(end) - at(begin)
-                    };
-                    let error = third * (at(first) + at(last)) - 2.0 / 3.0 * change;
-                    *worst = worst.max(error.abs());
-                }
-            }
-        }
-        let worst = worst.into_iter().fold(0.0, f32::max);
-        // The largest of all is the same in whatever order rows come.
-        self.worst.fetch_max(worst.to_bits(), Ordering::Relaxed);
-        for (cell, rate) in kept {
-            rates[cell.block - row.start].0[cell.layer][cell.lane] = rate;
-        }
-    }
-}
-
-impl Work for RatesOf<'_> {
-    fn blocks(&self) -> usize {
-        self.lanes.blocks
-    }
-
-    fn rows(&self) -> usize {
-        self.lanes.grid.ny
-    }
-
-    fn held_above(&self, _: usize) -> usize {
-        0
-    }
-
-    fn row(&self, mut task: Task, from: &Level, into: &mut Level) {
-        let blocks = self.lanes.blocks;
-        let here = (task.y - task.top) * blocks..(task.y - task.top + 1) * blocks;
-        let take = Rates(&mut into.free[here.clone()]);
-        match self.law {
-            Law::Fick => flow(Fick, self.lanes, self.ways, &mut task, from.free, take),
-            Law::Slowed(law) => flow(law, self.lanes, self.ways, &mut task, from.free, take),
-        }
-        // Wide rows come in strips, the last of which ends them.
-        if let Some(judge) = self.judge
-            && task.blocks.end == blocks
-        {
-            judge.row(task.y, &from.free[here.clone()], &mut into.free[here]);
-        }
-    }
 }
