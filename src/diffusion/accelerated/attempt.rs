@@ -151,7 +151,7 @@ impl Leap {
         let [a0, a1, change] = &mut self.a;
         if let Some(baths) = &mut self.baths {
             let bound = binds.then_some([a0.as_slice(), a1.as_slice()]);
-            baths.to_liquid(c1, c0, bound, &self.ways);
+            baths.restore_liquid(c1, c0, bound, &self.ways);
         }
         if binds {
             let all = change.par_iter_mut().zip(&*c1).zip(&mut *a1).zip(&*a0);

@@ -188,7 +188,7 @@ impl Baths {
     /// Turns the changes of s in a leap into changes of c since `c`, with what rounding had left over,
     /// and carries on what it will leave over now. Where dye binds, `bound` are A at the beginning and
     /// its changes, whose own rounding c takes over, for it is less fine there.
-    pub fn to_liquid(
+    pub fn restore_liquid(
         &mut self,
         changes: &mut [Cells],
         c: &[Cells],
