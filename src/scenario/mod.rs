@@ -23,7 +23,7 @@ pub use experiment::{Experiment, Origin};
 pub use fabric::{ClothSpec, Paths, YarnSpec};
 pub use images::Images;
 pub use library::{Bundled, bundled, names as bundled_names};
-pub use look::{Colours, LARGEST_SCALE, LookSpec, Show, YarnLook};
+pub use look::{ColourPath, Colours, LARGEST_SCALE, LookSpec, Show, YarnLook};
 pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, Solver, SupplySpec};
 pub use units::{Length, Time};
 

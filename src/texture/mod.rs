@@ -1,13 +1,14 @@
 //! What is seen: dye as colour on shaded yarns (paper D §4.3; model section 6).
 
 mod colour;
+pub mod oklab;
 mod shade;
 mod yarn;
 
 use bevy::prelude::*;
 use rayon::prelude::*;
 
-pub use colour::{Hsv, Ramp, Rgb, between, to_rgb};
+pub use colour::{Hsv, Ramp, Rgb, between, to_hsv, to_rgb};
 use shade::Shade;
 pub use shade::seen;
 
@@ -94,7 +95,11 @@ impl Texture {
             scale,
             seen,
             shade: shade::draw(cloth, scenario.look.yarn, scenario.seed, scale),
-            ramp: Ramp::new(&scenario.look.colours, darkest_at(scenario)),
+            ramp: Ramp::new(
+                &scenario.look.colours,
+                scenario.look.path,
+                darkest_at(scenario),
+            ),
             show: scenario.look.show,
         }
     }
