@@ -4,6 +4,7 @@ mod check;
 mod list;
 mod progress;
 mod record;
+mod segment;
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -26,6 +27,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::Record(arguments) => record::run(&arguments),
         Command::Check { scenarios } => check::run(&scenarios),
         Command::List => list::run(),
+        Command::Segment(arguments) => segment::run(&arguments),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "dyelapse", &mut script);

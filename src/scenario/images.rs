@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use image::{ImageReader, Limits};
-
 use super::check::{Checker, Problem};
 use crate::memory;
 use crate::pattern::{Fit, Pattern, Raster};
+use crate::photo::file;
 
 /// Loaded pictures by the name that the scenario gives them.
 #[derive(Debug, Clone, Default)]
@@ -60,7 +59,7 @@ impl Images {
                 at.field("file")
                     .problem(format!("the picture {}: {why}", path.display()))
             };
-            let (width, height) = dimensions(&path).map_err(named)?;
+            let (width, height) = file::dimensions(&path).map_err(named)?;
             let needed = BYTES_PER_PIXEL * width as u64 * height as u64;
             if needed > memory::free() {
                 return Err(named(format!(
@@ -85,28 +84,9 @@ impl Images {
     }
 }
 
-fn reader(path: &Path) -> Result<ImageReader<std::io::BufReader<std::fs::File>>, String> {
-    if path.is_dir() {
-        return Err("it is a folder".into());
-    }
-    let mut reader = ImageReader::open(path)
-        .and_then(ImageReader::with_guessed_format)
-        .map_err(|why| format!("it cannot be read: {why}"))?;
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(memory::free());
-    reader.limits(limits);
-    Ok(reader)
-}
-
-fn dimensions(path: &Path) -> Result<(usize, usize), String> {
-    let (width, height) = reader(path)?.into_dimensions().map_err(not_a_picture)?;
-    Ok((width as usize, height as usize))
-}
-
 /// Brightness from 0 to 1; what is transparent counts as black, so that only what is drawn counts.
 fn decode(path: &Path) -> Result<Raster, String> {
-    let image = reader(path)?.decode().map_err(not_a_picture)?;
-    let image = image.to_luma_alpha32f();
+    let image = file::decode(path)?.to_luma_alpha32f();
     Ok(Raster {
         nx: image.width() as usize,
         ny: image.height() as usize,
@@ -115,13 +95,4 @@ fn decode(path: &Path) -> Result<Raster, String> {
             .map(|pixel| (pixel.0[0] * pixel.0[1]).clamp(0.0, 1.0))
             .collect(),
     })
-}
-
-fn not_a_picture(why: image::ImageError) -> String {
-    match why {
-        image::ImageError::Unsupported(_) => {
-            format!("pictures are PNG or JPEG, and this is neither: {why}")
-        }
-        _ => format!("it is not a whole PNG or JPEG: {why}"),
-    }
 }
