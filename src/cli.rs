@@ -69,6 +69,18 @@ Examples:
   dyelapse wif old.wif --out clean.wif
   dyelapse wif fig10b --out twill.wif")]
     Wif(Wif),
+    /// Find warp and weft in a photograph of woven cloth
+    ///
+    /// Makes the mask that photo mode needs: blue (0,0,255) where the warp lies on top, red
+    /// (255,0,0) where the weft does. The warp must run down the photograph, within 12°. Says what it
+    /// saw and how much of it is doubtful; correct the mask by hand in any paint program.
+    #[command(after_help = "\
+Examples:
+  dyelapse segment linen.jpg                     writes linen_mask.png
+  dyelapse segment linen.jpg --doubt doubt.png   also shows where to look twice
+  dyelapse segment denim.jpg --weave twill3/1    the weave is known
+  dyelapse segment fine.png --pitch 3.5,5.3      pixels from yarn to yarn, if they are not found")]
+    Segment(Segment),
     /// Print the completions of a shell
     ///
     /// For bash: dyelapse completions bash > ~/.local/share/bash-completion/completions/dyelapse
@@ -151,4 +163,30 @@ pub struct Sheet {
     /// Say nothing but errors
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// `dyelapse segment`.
+#[derive(Debug, clap::Args)]
+pub struct Segment {
+    /// A photograph of woven cloth, PNG or JPEG
+    #[arg(value_name = "PHOTO")]
+    pub photo: PathBuf,
+    /// The mask [default: PHOTO_mask.png beside the photograph]
+    #[arg(long, short, value_name = "MASK.png")]
+    pub out: Option<PathBuf>,
+    /// Also draw the photograph in grey with doubtful pixels in yellow
+    #[arg(long, value_name = "FILE.png")]
+    pub doubt: Option<PathBuf>,
+    /// Also draw the photograph tinted with the mask
+    #[arg(long, value_name = "FILE.png")]
+    pub overlay: Option<PathBuf>,
+    /// The weave, if it is known: plain, twill2/1, satin5/2, basket2, or drawn as XX.,.XX,X.X
+    #[arg(long, value_name = "WEAVE")]
+    pub weave: Option<String>,
+    /// Pixels from warp yarn to warp yarn and from weft yarn to weft yarn, if they are known
+    #[arg(long, value_name = "WARP,WEFT")]
+    pub pitch: Option<String>,
+    /// Replace files that are already there
+    #[arg(long)]
+    pub force: bool,
 }

@@ -17,6 +17,7 @@
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
 //! | [`record`] | frames are kept | the output folder |
+//! | [`photo`] | photographs of cloth are read: the mask of warp and weft, the colours | [`Mask`](photo::Mask) |
 //!
 //! Each stage is a Bevy plugin of [`DyeingPlugins`]: its resource, its system, its place in the
 //! [`schedule`]. The numerics behind a system are plain functions.
@@ -48,6 +49,7 @@ pub mod kasuri;
 pub mod ledger;
 pub mod memory;
 pub mod pattern;
+pub mod photo;
 pub mod record;
 pub mod scenario;
 pub mod schedule;

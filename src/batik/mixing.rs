@@ -164,13 +164,13 @@ fn to_display(light: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Colours;
+    use crate::scenario::{ColourPath, Colours};
     use crate::texture::Ramp;
 
     const CLOTH: Rgb = [0.96, 0.94, 0.88];
 
     fn dye(colours: &Colours) -> Dyestuff {
-        let ramp = Ramp::new(colours, 1.0);
+        let ramp = Ramp::new(colours, ColourPath::Hsv, 1.0);
         Dyestuff::measured(|share| ramp.colour(share), 1.0)
     }
 
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn one_dye_alone_looks_as_it_was_measured() {
-        let ramp = Ramp::new(&Colours::Madder, 1.0);
+        let ramp = Ramp::new(&Colours::Madder, ColourPath::Hsv, 1.0);
         let cloth = ramp.colour(0.0);
         let mixture = Mixture::new(cloth, vec![dye(&Colours::Madder)]);
         for i in 0..=100 {

@@ -4,6 +4,7 @@ mod check;
 mod list;
 mod progress;
 mod record;
+mod segment;
 mod sheet;
 mod wif;
 
@@ -30,6 +31,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::Check { scenarios } => check::run(&scenarios),
         Command::List => list::run(),
         Command::Wif(arguments) => wif::run(&arguments),
+        Command::Segment(arguments) => segment::run(&arguments),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "dyelapse", &mut script);

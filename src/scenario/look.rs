@@ -17,6 +17,8 @@ pub struct LookSpec {
     pub show: Show,
     /// The colours of dyed cloth from the lightest to the darkest.
     pub colours: Colours,
+    /// The way from one of them to the next.
+    pub path: ColourPath,
     /// The amount of dye in a cell that has the darkest colour. Left out: as much as the cloth holds.
     pub darkest_at: Option<f64>,
     /// Pixels along one side of a cell.
@@ -34,6 +36,7 @@ impl Default for LookSpec {
         LookSpec {
             show: Show::FreeAndBound,
             colours: Colours::Indigo,
+            path: ColourPath::Hsv,
             darkest_at: None,
             pixels_per_cell: 1,
             side: Side::Face,
@@ -108,6 +111,16 @@ pub enum Show {
     FreeAndBound,
     /// Only what has bound to the fibre: the cloth after rinsing (paper D Fig 9, lower row).
     BoundOnly,
+}
+
+/// The way from one stop of the colours to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum ColourPath {
+    /// Straight in hue, saturation and value, hue the short way round (paper D §4.3.1).
+    #[default]
+    Hsv,
+    /// Straight in perceived lightness, chroma and hue: equal steps of dye look equal.
+    Oklch,
 }
 
 /// Colours of dyed cloth.

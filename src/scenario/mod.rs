@@ -30,7 +30,9 @@ pub use fabric::{ClothSpec, Kasuri, KasuriSpec, Paths, YarnSpec};
 pub use figure::{Figure, LARGEST_PANEL, Loaded, MOST_PANELS, Panel, Part};
 pub use images::{Images, Photo, Wanted};
 pub use library::{Bundled, bundled, bundled_figures, figure_names, names as bundled_names};
-pub use look::{Colours, FractalLook, LARGEST_SCALE, LookSpec, Show, Side, TextureLook, YarnLook};
+pub use look::{
+    ColourPath, Colours, FractalLook, LARGEST_SCALE, LookSpec, Show, Side, TextureLook, YarnLook,
+};
 pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, Solver, SupplySpec};
 pub use units::{Length, Time};
 

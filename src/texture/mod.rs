@@ -9,6 +9,7 @@ mod fractal;
 mod geometry;
 mod hair;
 mod noise;
+pub mod oklab;
 mod relief;
 mod shade;
 mod taps;
@@ -19,7 +20,7 @@ use std::sync::Arc;
 use bevy::prelude::*;
 use rayon::prelude::*;
 
-pub use colour::{Hsv, Ramp, Rgb, between, to_rgb};
+pub use colour::{Hsv, Ramp, Rgb, between, to_hsv, to_rgb};
 pub use relief::Relief;
 use shade::Shade;
 pub use shade::seen;
@@ -144,7 +145,7 @@ impl Texture {
                 taps::along(cloth.grid.ny, scale),
             ],
             tints: tints(face, scale),
-            ramp: Ramp::new(&look.colours, darkest_at(scenario)),
+            ramp: Ramp::new(&look.colours, look.path, darkest_at(scenario)),
             show: look.show,
         }
     }

@@ -1,0 +1,110 @@
+//! Pictures in files: read whole or not at all, within the memory there is, and turned upright.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+
+use crate::memory;
+
+/// Pixels across and down, as the picture is meant to be seen.
+///
+/// # Errors
+/// Why the file is no picture.
+pub(crate) fn dimensions(path: &Path) -> Result<(usize, usize), String> {
+    let mut decoder = reader(path)?.into_decoder().map_err(not_a_picture)?;
+    let (width, height) = decoder.dimensions();
+    let (width, height) = (width as usize, height as usize);
+    Ok(match upright(&mut decoder) {
+        Orientation::Rotate90
+        | Orientation::Rotate270
+        | Orientation::Rotate90FlipH
+        | Orientation::Rotate270FlipH => (height, width),
+        _ => (width, height),
+    })
+}
+
+/// The picture, turned as its camera says it was held.
+///
+/// # Errors
+/// Why the file is no picture, or not a whole one.
+pub(crate) fn decode(path: &Path) -> Result<DynamicImage, String> {
+    let reader = reader(path)?;
+    if reader.format() == Some(ImageFormat::Jpeg) {
+        ends(path)?;
+    }
+    let mut decoder = reader.into_decoder().map_err(not_a_picture)?;
+    let orientation = upright(&mut decoder);
+    let mut image = DynamicImage::from_decoder(decoder).map_err(not_a_picture)?;
+    image.apply_orientation(orientation);
+    Ok(image)
+}
+
+fn reader(path: &Path) -> Result<ImageReader<BufReader<File>>, String> {
+    if path.is_dir() {
+        return Err("it is a folder".into());
+    }
+    let mut reader = ImageReader::open(path)
+        .and_then(ImageReader::with_guessed_format)
+        .map_err(|why| format!("it cannot be read: {why}"))?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(memory::free());
+    reader.limits(limits);
+    Ok(reader)
+}
+
+/// How to turn it. What a camera wrote wrongly is not worth refusing a picture for.
+fn upright(decoder: &mut impl ImageDecoder) -> Orientation {
+    decoder.orientation().unwrap_or(Orientation::NoTransforms)
+}
+
+fn not_a_picture(why: image::ImageError) -> String {
+    match why {
+        image::ImageError::Unsupported(_) => {
+            format!("pictures are PNG or JPEG, and this is neither: {why}")
+        }
+        _ => format!("it is not a whole PNG or JPEG: {why}"),
+    }
+}
+
+/// Refuses a JPEG that ends too early. Its decoder would show the missing part as grey.
+///
+/// Markers of the head carry their length; after the first scan begins (FF DA), FF D9 can only be
+/// the end: in scans, FF is always followed by 00 or a restart marker (ITU T.81, B.1.1).
+fn ends(path: &Path) -> Result<(), String> {
+    let cut = || "it is not a whole JPEG: it ends before its last row".to_owned();
+    let mut file = File::open(path)
+        .map(BufReader::new)
+        .map_err(|why| format!("it cannot be read: {why}"))?;
+    file.seek(SeekFrom::Start(2)).map_err(|_| cut())?;
+    loop {
+        let mut marker = [0; 2];
+        file.read_exact(&mut marker).map_err(|_| cut())?;
+        match marker {
+            // Filling before a marker.
+            [0xff, 0xff] => {
+                file.seek_relative(-1).map_err(|_| cut())?;
+            }
+            [0xff, 0xda] => break,
+            [0xff, 0x01 | 0xd0..=0xd8] => {}
+            [0xff, _] => {
+                let mut length = [0; 2];
+                file.read_exact(&mut length).map_err(|_| cut())?;
+                let length = i64::from(u16::from_be_bytes(length)) - 2;
+                file.seek_relative(length.max(0)).map_err(|_| cut())?;
+            }
+            // Not a marker: the decoder will say what is wrong.
+            _ => return Ok(()),
+        }
+    }
+    let mut scans = Vec::new();
+    file.read_to_end(&mut scans)
+        .map_err(|why| format!("it cannot be read: {why}"))?;
+    if scans.windows(2).any(|pair| pair == [0xff, 0xd9]) {
+        Ok(())
+    } else {
+        Err(cut())
+    }
+}

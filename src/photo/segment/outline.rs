@@ -1,0 +1,216 @@
+//! The relief that fits the mean picture of a weave's repeat best.
+
+use rayon::prelude::*;
+
+use super::classes::Classes;
+use super::contrast::Contrast;
+use super::crossings::Crossings;
+use super::relief::{Fit, Place, REGRESSORS, Relief, fit};
+use super::sides::Sides;
+use super::yarns::Yarns;
+use crate::photo::plane::Plane;
+
+/// What a camera blurs, as a standard deviation in pixels.
+pub const CAMERA_BLUR: f32 = 0.6;
+/// Bins along a side of a crossing, of small and of large repeats.
+const BINS: usize = 16;
+const FEWER_BINS: usize = 10;
+/// The largest repeat that is laid out with many bins, in crossings.
+const SMALL_REPEAT: usize = 16;
+/// More than so many pixels in a bin do not make it more certain.
+const MOST_PIXELS: f32 = 8.0;
+/// What makes yarns of another width than the pitch a little less likely.
+const WIDTH_PRIOR: f64 = 0.01;
+/// Where the five numbers of a relief may lie.
+const RANGE: [(f32, f32); 5] = [
+    (-0.25, 0.25),
+    (-0.25, 0.25),
+    (0.6, 1.0),
+    (0.6, 1.0),
+    (0.1, 1.1),
+];
+/// The first steps of the search.
+const STEPS: [f32; 5] = [0.08, 0.08, 0.08, 0.08, 0.15];
+/// Times that steps are halved.
+const HALVINGS: usize = 3;
+/// Rounds over all numbers before steps are halved.
+const ROUNDS: usize = 2;
+
+/// The mean picture of one repeat of the weave.
+struct Repeat {
+    light: Plane,
+    tint: Plane,
+    weight: Plane,
+    bins: usize,
+    aspect: [f32; 2],
+    /// The camera's blur in bins.
+    blur: f32,
+    /// 1 where the warp is on top, else −1, by pick and end.
+    up: Vec<f32>,
+    ends: usize,
+    picks: usize,
+}
+
+/// The relief of a cloth and how well it explains the photograph's mean repeat.
+pub fn find(
+    contrast: &Contrast,
+    yarns: [&Yarns; 2],
+    crossings: &Crossings,
+    classes: &Classes,
+    sides: &Sides,
+) -> (Relief, f64) {
+    let repeat = Repeat::of(contrast, yarns, crossings, classes, sides);
+    let starts: Vec<[f32; 5]> = (0..8)
+        .map(|i| {
+            let shift = |bit: usize| if i >> bit & 1 == 1 { 0.12 } else { 0.0 };
+            [
+                shift(0),
+                shift(1),
+                0.9,
+                0.9,
+                if i >> 2 & 1 == 1 { 0.7 } else { 0.3 },
+            ]
+        })
+        .collect();
+    let found: Vec<(f64, [f32; 5])> = starts
+        .into_par_iter()
+        .map(|start| repeat.descend(start))
+        .collect();
+    let (_, best) = found
+        .into_iter()
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap_or((1.0, [0.0, 0.0, 0.9, 0.9, 0.5]));
+    let relief = Relief::from_numbers(best);
+    (relief, repeat.fit(relief).share)
+}
+
+impl Repeat {
+    fn of(
+        contrast: &Contrast,
+        yarns: [&Yarns; 2],
+        crossings: &Crossings,
+        classes: &Classes,
+        sides: &Sides,
+    ) -> Self {
+        let lattice = classes.lattice;
+        let (ends, picks) = lattice.repeat();
+        let bins = if ends * picks <= SMALL_REPEAT {
+            BINS
+        } else {
+            FEWER_BINS
+        };
+        // Means by class first, then laid out.
+        let per_class = bins * bins;
+        let mut sums = vec![[0.0_f64; 2]; lattice.classes() * per_class];
+        let mut counts = vec![0.0_f32; sums.len()];
+        let (nx, ny) = yarns[0].size();
+        for y in 0..ny {
+            for x in 0..nx {
+                let class = classes.of[crossings.at_pixel(x, y)];
+                let bin = |yarns: &Yarns| {
+                    let number = yarns.number_at(x, y);
+                    (((number - number.floor()) * bins as f64) as usize).min(bins - 1)
+                };
+                let i = class * per_class + bin(yarns[1]) * bins + bin(yarns[0]);
+                sums[i][0] += f64::from(contrast.light.get(x, y));
+                sums[i][1] += f64::from(contrast.tint.get(x, y));
+                counts[i] += 1.0;
+            }
+        }
+        let index = |x: usize, y: usize| {
+            let class = lattice.class(x / bins, y / bins);
+            class * per_class + y % bins * bins + x % bins
+        };
+        let (nx, ny) = (ends * bins, picks * bins);
+        let mean = |k: usize| {
+            Plane::new(nx, ny, |x, y| {
+                let i = index(x, y);
+                (sums[i][k] / f64::from(counts[i].max(1.0))) as f32
+            })
+        };
+        let pitches = yarns.map(|yarns| yarns.wave.pitch());
+        let middle = 0.5 * (pitches[0] + pitches[1]);
+        Repeat {
+            light: mean(0),
+            tint: mean(1),
+            weight: Plane::new(nx, ny, |x, y| counts[index(x, y)].min(MOST_PIXELS)),
+            bins,
+            aspect: pitches.map(|pitch| (pitch / middle) as f32),
+            blur: CAMERA_BLUR * bins as f32 / middle as f32,
+            up: (0..picks)
+                .flat_map(|p| (0..ends).map(move |e| (e, p)))
+                .map(|(e, p)| {
+                    if sides.warp_up[lattice.class(e, p)] {
+                        1.0
+                    } else {
+                        -1.0
+                    }
+                })
+                .collect(),
+            ends,
+            picks,
+        }
+    }
+
+    fn fit(&self, relief: Relief) -> Fit {
+        let (nx, ny) = (self.light.nx, self.light.ny);
+        let up = |e: i64, p: i64| {
+            let e = e.rem_euclid(self.ends as i64) as usize;
+            let p = p.rem_euclid(self.picks as i64) as usize;
+            self.up[p * self.ends + e]
+        };
+        let middle = |i: usize| (i as f64 + 0.5) / self.bins as f64;
+        let mut regressors: Vec<Plane> = (0..REGRESSORS)
+            .map(|_| Plane {
+                nx,
+                ny,
+                values: vec![0.0; nx * ny],
+            })
+            .collect();
+        for y in 0..ny {
+            for x in 0..nx {
+                let place = Place::new(&relief, self.aspect, [middle(x), middle(y)], up);
+                let values = place.regressors(place.lead() > 0.0);
+                for (plane, value) in regressors.iter_mut().zip(values) {
+                    plane.values[y * nx + x] = value;
+                }
+            }
+        }
+        let blurred: Vec<Plane> = regressors
+            .iter()
+            .map(|plane| plane.blurred_around(self.blur))
+            .collect();
+        fit([&self.light, &self.tint], Some(&self.weight), &blurred)
+    }
+
+    fn cost(&self, numbers: [f32; 5]) -> f64 {
+        let width = |k: usize| f64::from((1.0 - numbers[k]) * (1.0 - numbers[k]));
+        self.fit(Relief::from_numbers(numbers)).share + WIDTH_PRIOR * (width(2) + width(3))
+    }
+
+    /// Goes from a start to lower cost, one number at a time.
+    fn descend(&self, start: [f32; 5]) -> (f64, [f32; 5]) {
+        let mut here = start;
+        let mut cost = self.cost(here);
+        let mut steps = STEPS;
+        for _ in 0..HALVINGS {
+            for _ in 0..ROUNDS {
+                for k in 0..5 {
+                    for step in [-steps[k], steps[k]] {
+                        let mut there = here;
+                        there[k] += step;
+                        if !(RANGE[k].0..=RANGE[k].1).contains(&there[k]) {
+                            continue;
+                        }
+                        let next = self.cost(there);
+                        if next < cost - 1e-6 {
+                            (here, cost) = (there, next);
+                        }
+                    }
+                }
+            }
+            steps = steps.map(|step| 0.5 * step);
+        }
+        (cost, here)
+    }
+}
