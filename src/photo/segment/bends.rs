@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use super::contrast::Contrast;
 use super::crossings::Crossings;
-use super::outline::CAMERA_BLUR;
 use super::relief::{Fit, Light, Place, REGRESSORS, Relief, fit};
 use super::yarns::Yarns;
 use crate::photo::plane::{Plane, gaussian};
@@ -40,6 +39,8 @@ pub struct Weaving<'a> {
     pub warp_up: &'a [bool],
     /// The shape of the cloth on the whole.
     pub relief: Relief,
+    /// What the camera blurs: a standard deviation in pixels.
+    pub blur: f32,
 }
 
 /// Shift and width of single yarns beyond those of the relief, at each crossing.
@@ -138,7 +139,7 @@ impl Weaving<'_> {
             })
             .collect();
         let regressors: Vec<Plane> = (0..REGRESSORS)
-            .map(|k| Plane::new(nx, ny, |x, y| values[y * nx + x][k]).blurred(CAMERA_BLUR))
+            .map(|k| Plane::new(nx, ny, |x, y| values[y * nx + x][k]).blurred(self.blur))
             .collect();
         fit(
             [&self.contrast.light, &self.contrast.tint],
@@ -158,7 +159,7 @@ impl Weaving<'_> {
                 light.shade(&place.regressors(place.lead() > 0.0))
             })
             .collect();
-        [0, 1].map(|k| Plane::new(nx, ny, |x, y| shades[y * nx + x][k]).blurred(CAMERA_BLUR))
+        [0, 1].map(|k| Plane::new(nx, ny, |x, y| shades[y * nx + x][k]).blurred(self.blur))
     }
 
     fn step(&self, bends: &mut Bends, light: &Fit) {

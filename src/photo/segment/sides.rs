@@ -19,8 +19,12 @@ use super::repeat::Lattice;
 const MOST_CERTAIN: f64 = 16.0;
 /// Weights of the three kinds of evidence, fitted to rendered cloth whose truth is known.
 const STREAK_WEIGHT: f64 = 6.0;
-const TEXTURE_WEIGHT: f64 = 0.25;
-const YARN_WEIGHT: f64 = 0.15;
+const TEXTURE_WEIGHT: f64 = 0.2;
+const YARN_WEIGHT: f64 = 0.35;
+/// At most so many ways to divide the classes are handed on, of those whose groups differ nearly as
+/// plainly as the best do.
+const LIKELY: usize = 6;
+const LIKELY_SCORE: f64 = 0.7;
 /// Sides of a square that the rest of a patch is kept in, to be compared along yarns.
 const REST: usize = 4;
 
@@ -52,13 +56,13 @@ struct Class {
 }
 
 impl Sides {
-    /// Finds the sides of all classes. With `known` weaves, each of which says whether the
-    /// warp is on top in each class of the lattice, only their place is looked for.
-    pub fn find(
+    /// The likeliest sides of all classes, the best first. With `known` weaves, each of which says
+    /// whether the warp is on top in each class of the lattice, only their place is looked for.
+    pub fn likely(
         crossings: &Crossings,
         classes: &Classes,
         known: Option<&[Vec<bool>]>,
-    ) -> Option<Self> {
+    ) -> Vec<Self> {
         let measured = measure(crossings, classes);
         let candidates = match known {
             Some(known) => known
@@ -68,24 +72,31 @@ impl Sides {
             None => possible(classes.lattice),
         };
         let judge = Judge::new(&measured, classes.lattice);
-        let judged = candidates
-            .into_iter()
-            .map(|warp_up| (judge.groups(&warp_up), judge.evidence(&warp_up), warp_up));
         // Of two that are each other's reverse, the one for which there is evidence.
-        let signed = |groups: f64, evidence: f64| {
-            if evidence > 0.0 {
-                groups
+        let mut judged: Vec<(f64, f64, Vec<bool>)> = candidates
+            .into_iter()
+            .map(|warp_up| (judge.groups(&warp_up), judge.evidence(&warp_up), warp_up))
+            .filter(|(_, evidence, _)| known.is_some() || *evidence > 0.0)
+            .collect();
+        let score = |(groups, evidence, _): &(f64, f64, Vec<bool>)| {
+            if *evidence > 0.0 {
+                *groups
             } else {
                 groups - 100.0
             }
         };
-        let (_, evidence, warp_up) =
-            judged.max_by(|a, b| signed(a.0, a.1).total_cmp(&signed(b.0, b.1)))?;
-        Some(Sides {
-            sure: 1.0 / (1.0 + libm::exp(-2.0 * evidence)),
-            coloured: ((judge.colours_apart(&warp_up) - 1.5) / 2.0).clamp(0.0, 1.0),
-            warp_up,
-        })
+        judged.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        let best = judged.first().map_or(0.0, score);
+        judged
+            .into_iter()
+            .take(LIKELY)
+            .take_while(|candidate| score(candidate) > LIKELY_SCORE * best)
+            .map(|(_, evidence, warp_up)| Sides {
+                sure: 1.0 / (1.0 + libm::exp(-2.0 * evidence)),
+                coloured: ((judge.colours_apart(&warp_up) - 1.5) / 2.0).clamp(0.0, 1.0),
+                warp_up,
+            })
+            .collect()
     }
 }
 
@@ -134,7 +145,7 @@ fn possible(lattice: Lattice) -> Vec<Vec<bool>> {
 struct Judge<'a> {
     classes: &'a [Class],
     lattice: Lattice,
-    /// Streak, texture, lightness and tint of every class, standardised, each with its weight.
+    /// Streak, texture, likeness along yarns, lightness and tint of every class, standardised, each with its weight.
     features: Vec<(f64, Vec<f64>)>,
 }
 
@@ -164,6 +175,7 @@ impl<'a> Judge<'a> {
             features: vec![
                 (1.0, feature(&|c| c.streak)),
                 (1.0, feature(&|c| c.texture)),
+                (1.0, feature(&|c| c.yarn)),
                 (strength(0), feature(&|c| c.colour[0])),
                 (strength(1), feature(&|c| c.colour[1])),
             ],
