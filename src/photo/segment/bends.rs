@@ -35,8 +35,8 @@ pub struct Weaving<'a> {
     pub yarns: [&'a Yarns; 2],
     /// Where they cross.
     pub crossings: &'a Crossings<'a>,
-    /// For every crossing, whether the warp is on top.
-    pub warp_up: &'a [bool],
+    /// For every crossing, evidence that the warp is on top.
+    pub crossed: &'a [f32],
     /// The shape of the cloth on the whole.
     pub relief: Relief,
     /// What the camera blurs: a standard deviation in pixels.
@@ -63,7 +63,7 @@ impl Weaving<'_> {
         let inside = |i: i64, first: i64, n: usize| (i - first).clamp(0, n as i64 - 1) as usize;
         let e = inside(end, self.crossings.first_end, self.crossings.ends);
         let p = inside(pick, self.crossings.first_pick, self.crossings.picks);
-        if self.warp_up[p * self.crossings.ends + e] {
+        if self.crossed[p * self.crossings.ends + e] > 0.0 {
             1.0
         } else {
             -1.0

@@ -22,6 +22,7 @@ mod pitch;
 mod relief;
 mod repeat;
 mod sides;
+mod single;
 mod spectrum;
 mod weave;
 mod yarns;
@@ -315,7 +316,8 @@ fn given(lab: &Lab, pitch: [f64; 2], hints: &Hints) -> Result<Pair, PhotoError> 
 /// A weave as far as it is known from looking at crossings.
 struct Woven {
     explained: Explained,
-    classes: Classes,
+    /// Evidence for every crossing that the warp is on top.
+    crossed: Vec<f32>,
     sides: Sides,
     outline: Outline,
 }
@@ -345,24 +347,19 @@ impl Pair {
         let crossings = Crossings::of(&soft, &warp, &weft).ok_or_else(few)?;
         let Woven {
             explained,
-            classes,
+            crossed,
             sides,
             outline,
         } = woven(&contrast, &soft, yarns, hints, Some(begin)).ok_or_else(few)?;
-        let warp_up: Vec<bool> = classes
-            .of
-            .iter()
-            .map(|class| sides.warp_up[*class])
-            .collect();
         let weaving = Weaving {
             contrast: &contrast,
             yarns,
             crossings: &crossings,
-            warp_up: &warp_up,
+            crossed: &crossed,
             relief: outline.relief,
             blur: outline.blur,
         };
-        let (mask, doubt) = decide::decide(&weaving, &classes, &sides, self.factor, lab.size());
+        let (mask, doubt) = decide::decide(&weaving, &sides, self.factor, lab.size());
         let turned = |k: usize| {
             let [fx, fy] = self.waves[k].frequency;
             let angle = if k == 0 {
@@ -405,18 +402,12 @@ fn woven(
     let (sides, outline, left) =
         outline::find(contrast, yarns, &crossings, &classes, &likely, begin)?;
     if std::env::var("DYEDBG").is_ok() {
-        eprintln!(
-            "DBG {explained:?} {likely:?} CHOSEN {sides:?} {outline:?} left {left:.3} cert {:?}",
-            {
-                let mut c = classes.certainty.clone();
-                c.sort_by(f32::total_cmp);
-                [c[c.len() / 20], c[c.len() / 2]]
-            }
-        );
+        eprintln!("DBG {explained:?} {sides:?} {outline:?} left {left:.3}");
     }
+    let crossed = single::evidence(&crossings, &features, &classes, &sides);
     Some(Woven {
         explained,
-        classes,
+        crossed,
         sides,
         outline,
     })

@@ -32,7 +32,8 @@ const RANGE: [(f32, f32); 6] = [
 /// The first steps of the search.
 const STEPS: [f32; 6] = [0.08, 0.08, 0.08, 0.08, 0.15, 0.3];
 /// Times that steps are halved.
-const HALVINGS: usize = 3;
+const HALVINGS: usize = 4;
+const ROUGHLY: usize = 2;
 /// Rounds over all numbers before steps are halved.
 const ROUNDS: usize = 2;
 
@@ -85,19 +86,15 @@ pub fn find(
         })
         .collect();
     starts.extend(begin.map(Outline::numbers));
-    let ways: Vec<_> = likely
-        .iter()
-        .flat_map(|sides| starts.iter().map(move |start| (sides, *start)))
-        .collect();
-    let found: Vec<_> = ways
-        .into_par_iter()
-        .map(|(sides, start)| {
-            let woven = repeat.woven(classes.lattice, sides);
-            (sides, woven.descend(start))
-        })
-        .collect();
-    let (sides, (cost, best)) = found.into_iter().min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
-    Some((sides.clone(), Outline::from_numbers(best), cost))
+    // Which sides they are is plain after a few steps.
+    let roughly: Vec<Numbers> = starts[..4].to_vec();
+    let sides = match likely {
+        [one] => one,
+        _ => repeat.best(classes.lattice, likely, &roughly, ROUGHLY)?.0,
+    };
+    let sides = std::slice::from_ref(sides);
+    let (sides, cost, numbers) = repeat.best(classes.lattice, sides, &starts, HALVINGS)?;
+    Some((sides.clone(), Outline::from_numbers(numbers), cost))
 }
 
 /// The numbers of a relief, and the blur.
@@ -174,6 +171,26 @@ impl Repeat {
         }
     }
 
+    /// The sides and the start that lead to the lowest cost, and where they lead to.
+    fn best<'s>(
+        &self,
+        lattice: Lattice,
+        sides: &'s [Sides],
+        starts: &[Numbers],
+        halvings: usize,
+    ) -> Option<(&'s Sides, f64, Numbers)> {
+        let of = |sides: &'s Sides| starts.iter().map(move |start| (sides, *start));
+        let ways: Vec<(&Sides, Numbers)> = sides.iter().flat_map(of).collect();
+        let found: Vec<_> = ways
+            .into_par_iter()
+            .map(|(sides, start)| {
+                let (cost, numbers) = self.woven(lattice, sides).descend(start, halvings);
+                (sides, cost, numbers)
+            })
+            .collect();
+        found.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     fn woven(&self, lattice: Lattice, sides: &Sides) -> Woven<'_> {
         let crossings = (0..self.picks).flat_map(|p| (0..self.ends).map(move |e| (e, p)));
         let up = |(e, p)| {
@@ -240,11 +257,11 @@ impl Woven<'_> {
     }
 
     /// Goes from a start to lower cost, one number at a time.
-    fn descend(&self, start: Numbers) -> (f64, Numbers) {
+    fn descend(&self, start: Numbers, halvings: usize) -> (f64, Numbers) {
         let mut here = start;
         let mut cost = self.cost(here);
         let mut steps = STEPS;
-        for _ in 0..HALVINGS {
+        for _ in 0..halvings {
             for _ in 0..ROUNDS {
                 for k in 0..start.len() {
                     for step in [-steps[k], steps[k]] {

@@ -16,7 +16,7 @@ pub const REGRESSORS: usize = 2 * TERMS + 1;
 /// How tall a yarn of a pitch's width stands above its axis, in pitches.
 const ROUND: f32 = 0.4;
 /// How fast a yarn falls away beyond its edge, in its radii.
-const BEYOND: f32 = 12.0;
+const BEYOND: f32 = 6.0;
 
 /// The shape of the cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]

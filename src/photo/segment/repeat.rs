@@ -11,7 +11,10 @@ use rayon::prelude::*;
 use super::crossings::{Crossings, FEATURES, weights};
 
 /// The most classes of a repeat that is looked for.
-pub const MOST_CLASSES: usize = 16;
+const MOST_CLASSES: usize = 32;
+/// The most of which every lattice is tried. Of those with more, only the ones of herringbones and the
+/// like, in rectangles or shifted by half.
+const MOST_OF_ANY_LATTICE: usize = 16;
 /// Crossings along a side of a block, if there are enough.
 const BLOCK: usize = 9;
 /// The most crossings that lattices are tried on.
@@ -81,6 +84,9 @@ impl Lattice {
                 (0..a).map(move |b| Lattice { a, b, c })
             })
             .filter(|lattice| lattice.c > 1 || lattice.b > 0)
+            .filter(move |lattice| {
+                classes <= MOST_OF_ANY_LATTICE || lattice.b == 0 || 2 * lattice.b == lattice.a
+            })
     }
 }
 
@@ -384,7 +390,7 @@ mod tests {
 
     #[test]
     fn a_lattice_step_leads_to_the_same_class() {
-        for classes in 2..=12 {
+        for classes in 2..=20 {
             for lattice in Lattice::all(classes) {
                 for p in 0..20 {
                     for e in 0..20 {
