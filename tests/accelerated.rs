@@ -1,6 +1,7 @@
 //! The accelerated solver against the explicit one, and the laws it must keep by itself.
 
 mod common;
+#[allow(clippy::disallowed_methods)] // A test may use the platform's own functions.
 mod reference;
 
 use bevy::app::App;

@@ -74,11 +74,11 @@ fn report(found: &Segmentation, out: &Path) -> String {
     let mut text = String::new();
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let names = ["warp", "weft"];
-    for k in 0..2 {
+    for (k, name) in names.into_iter().enumerate() {
         let _ = writeln!(
             text,
-            "{}: {} yarns, {:.2} pixels apart, turned by {:.1}°",
-            names[k], found.yarns[k], found.pitch[k], found.turned[k]
+            "{name}: {} yarns, {:.2} pixels apart, turned by {:.1}°",
+            found.yarns[k], found.pitch[k], found.turned[k]
         );
     }
     let _ = writeln!(text, "weave: {}", found.weave);

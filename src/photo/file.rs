@@ -1,8 +1,6 @@
 //! Pictures in files: read whole or not at all, within the memory there is, and turned upright.
 
-use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io::Cursor;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -13,8 +11,8 @@ use crate::memory;
 ///
 /// # Errors
 /// Why the file is no picture.
-pub(crate) fn dimensions(path: &Path) -> Result<(usize, usize), String> {
-    let mut decoder = reader(path)?.into_decoder().map_err(not_a_picture)?;
+pub(crate) fn dimensions(bytes: &[u8]) -> Result<(usize, usize), String> {
+    let mut decoder = reader(bytes)?.into_decoder().map_err(not_a_picture)?;
     let (width, height) = decoder.dimensions();
     let (width, height) = (width as usize, height as usize);
     Ok(match upright(&mut decoder) {
@@ -30,10 +28,10 @@ pub(crate) fn dimensions(path: &Path) -> Result<(usize, usize), String> {
 ///
 /// # Errors
 /// Why the file is no picture, or not a whole one.
-pub(crate) fn decode(path: &Path) -> Result<DynamicImage, String> {
-    let reader = reader(path)?;
+pub(crate) fn decode(bytes: &[u8]) -> Result<DynamicImage, String> {
+    let reader = reader(bytes)?;
     if reader.format() == Some(ImageFormat::Jpeg) {
-        ends(path)?;
+        ends(bytes)?;
     }
     let mut decoder = reader.into_decoder().map_err(not_a_picture)?;
     let orientation = upright(&mut decoder);
@@ -42,12 +40,9 @@ pub(crate) fn decode(path: &Path) -> Result<DynamicImage, String> {
     Ok(image)
 }
 
-fn reader(path: &Path) -> Result<ImageReader<BufReader<File>>, String> {
-    if path.is_dir() {
-        return Err("it is a folder".into());
-    }
-    let mut reader = ImageReader::open(path)
-        .and_then(ImageReader::with_guessed_format)
+fn reader(bytes: &[u8]) -> Result<ImageReader<Cursor<&[u8]>>, String> {
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
         .map_err(|why| format!("it cannot be read: {why}"))?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(memory::free());
@@ -73,36 +68,29 @@ fn not_a_picture(why: image::ImageError) -> String {
 ///
 /// Markers of the head carry their length; after the first scan begins (FF DA), FF D9 can only be
 /// the end: in scans, FF is always followed by 00 or a restart marker (ITU T.81, B.1.1).
-fn ends(path: &Path) -> Result<(), String> {
+fn ends(bytes: &[u8]) -> Result<(), String> {
     let cut = || "it is not a whole JPEG: it ends before its last row".to_owned();
-    let mut file = File::open(path)
-        .map(BufReader::new)
-        .map_err(|why| format!("it cannot be read: {why}"))?;
-    file.seek(SeekFrom::Start(2)).map_err(|_| cut())?;
+    let mut at = 2;
     loop {
-        let mut marker = [0; 2];
-        file.read_exact(&mut marker).map_err(|_| cut())?;
-        match marker {
+        let Some([first, second]) = bytes.get(at..at + 2).map(|pair| [pair[0], pair[1]]) else {
+            return Err(cut());
+        };
+        match [first, second] {
             // Filling before a marker.
-            [0xff, 0xff] => {
-                file.seek_relative(-1).map_err(|_| cut())?;
-            }
+            [0xff, 0xff] => at += 1,
             [0xff, 0xda] => break,
-            [0xff, 0x01 | 0xd0..=0xd8] => {}
+            [0xff, 0x01 | 0xd0..=0xd8] => at += 2,
             [0xff, _] => {
-                let mut length = [0; 2];
-                file.read_exact(&mut length).map_err(|_| cut())?;
-                let length = i64::from(u16::from_be_bytes(length)) - 2;
-                file.seek_relative(length.max(0)).map_err(|_| cut())?;
+                let Some(length) = bytes.get(at + 2..at + 4) else {
+                    return Err(cut());
+                };
+                at += 2 + usize::from(u16::from_be_bytes([length[0], length[1]])).max(2);
             }
             // Not a marker: the decoder will say what is wrong.
             _ => return Ok(()),
         }
     }
-    let mut scans = Vec::new();
-    file.read_to_end(&mut scans)
-        .map_err(|why| format!("it cannot be read: {why}"))?;
-    if scans.windows(2).any(|pair| pair == [0xff, 0xd9]) {
+    if bytes[at..].windows(2).any(|pair| pair == [0xff, 0xd9]) {
         Ok(())
     } else {
         Err(cut())

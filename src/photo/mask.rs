@@ -54,7 +54,11 @@ impl Mask {
         Mask::load(path)
     }
 
-    fn read(path: &Path, picture: &Photo) -> Result<Self, PhotoError> {
+    /// Reads a mask that is in memory; `path` stands in messages.
+    ///
+    /// # Errors
+    /// As [`Mask::load`].
+    pub fn read(path: &Path, picture: &Photo) -> Result<Self, PhotoError> {
         let sides: Vec<Option<bool>> = picture.rgb.iter().map(|rgb| side(*rgb)).collect();
         let strange = |i: &usize| sides[*i].is_none();
         let mut neither = (0..sides.len()).filter(strange);

@@ -6,6 +6,7 @@ use image::{DynamicImage, RgbImage};
 
 use super::{PhotoError, file, segment};
 use crate::memory;
+use crate::scenario::beside;
 use crate::texture::oklab::{Oklab, linear};
 
 /// Bytes for one pixel while a photograph is loaded: as decoded, in 8 bits with opacity, and kept.
@@ -42,7 +43,8 @@ impl Photo {
     }
 
     fn load_with(path: &Path, bytes_per_pixel: u64) -> Result<Self, PhotoError> {
-        let (nx, ny) = Photo::dimensions(path)?;
+        let bytes = beside::read(path).map_err(|why| unreadable(path, why))?;
+        let (nx, ny) = file::dimensions(&bytes).map_err(|why| unreadable(path, why))?;
         let needed = bytes_per_pixel * nx as u64 * ny as u64;
         let free = memory::free();
         if needed > free {
@@ -54,7 +56,7 @@ impl Photo {
                 free,
             });
         }
-        let image = file::decode(path).map_err(|why| unreadable(path, why))?;
+        let image = file::decode(&bytes).map_err(|why| unreadable(path, why))?;
         Ok(Photo::from_image(image))
     }
 
@@ -63,7 +65,8 @@ impl Photo {
     /// # Errors
     /// A [`PhotoError`] that names the file.
     pub fn dimensions(path: &Path) -> Result<(usize, usize), PhotoError> {
-        file::dimensions(path).map_err(|why| unreadable(path, why))
+        let bytes = beside::read(path).map_err(|why| unreadable(path, why))?;
+        file::dimensions(&bytes).map_err(|why| unreadable(path, why))
     }
 
     /// A photograph that is in memory.

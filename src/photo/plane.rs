@@ -70,15 +70,26 @@ impl Plane {
 
     /// Blurred with a Gaussian of standard deviation `sigma` pixels, mirrored at the edges.
     pub fn blurred(&self, sigma: f32) -> Plane {
-        self.blurred_with(sigma, mirrored)
+        self.blurred_with(sigma, |i, n| Some(mirrored(i, n)))
     }
 
     /// Blurred, where what leaves one edge comes back at the other.
     pub fn blurred_around(&self, sigma: f32) -> Plane {
-        self.blurred_with(sigma, |i, n| i.rem_euclid(n as isize) as usize)
+        self.blurred_with(sigma, |i, n| Some(i.rem_euclid(n as isize) as usize))
     }
 
-    fn blurred_with(&self, sigma: f32, place: impl Fn(isize, usize) -> usize + Sync) -> Plane {
+    /// Blurred, where nothing lies beyond the edges.
+    pub fn blurred_alone(&self, sigma: f32) -> Plane {
+        self.blurred_with(sigma, |i, n| {
+            (0..n as isize).contains(&i).then_some(i as usize)
+        })
+    }
+
+    fn blurred_with(
+        &self,
+        sigma: f32,
+        place: impl Fn(isize, usize) -> Option<usize> + Sync,
+    ) -> Plane {
         let kernel = gaussian(sigma);
         let reach = (kernel.len() / 2) as isize;
         let (nx, ny) = (self.nx, self.ny);
@@ -87,7 +98,9 @@ impl Plane {
             .enumerate()
             .for_each(|(y, row)| {
                 for (k, weight) in kernel.iter().enumerate() {
-                    let from = place(y as isize + k as isize - reach, ny);
+                    let Some(from) = place(y as isize + k as isize - reach, ny) else {
+                        continue;
+                    };
                     let source = &self.values[from * nx..][..nx];
                     for (sum, value) in row.iter_mut().zip(source) {
                         *sum += weight * value;
@@ -100,7 +113,7 @@ impl Plane {
             .zip(down.par_chunks(nx.max(1)))
             .for_each(|(row, source)| {
                 let padded: Vec<f32> = (-reach..nx as isize + reach)
-                    .map(|x| source[place(x, nx)])
+                    .map(|x| place(x, nx).map_or(0.0, |x| source[x]))
                     .collect();
                 for (x, sum) in row.iter_mut().enumerate() {
                     let around = &padded[x..][..kernel.len()];

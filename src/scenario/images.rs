@@ -1,9 +1,9 @@
 //! The pictures that a scenario's patterns name, loaded and checked before anything runs.
 
 use std::collections::BTreeMap;
-use std::io::Cursor;
+use std::path::Path;
 
-use image::{DynamicImage, ImageReader, Limits, RgbImage, imageops};
+use image::{RgbImage, imageops};
 
 use super::check::Problem;
 use super::{Beside, Scenario};
@@ -12,6 +12,7 @@ use crate::cloth::{Grid, Mask};
 use crate::draft::{self, Draft, wif};
 use crate::memory;
 use crate::pattern::{Fit, Raster};
+use crate::photo::{self, file};
 
 /// Loaded pictures by the name that the scenario gives them.
 #[derive(Debug, Clone, Default)]
@@ -134,7 +135,7 @@ impl Images {
             }
             let named = |why: String| at.problem(format!("the picture {}: {why}", path.display()));
             let bytes = beside.read(file).map_err(named)?;
-            let size = dimensions(&bytes).map_err(named)?;
+            let size = file::dimensions(&bytes).map_err(named)?;
             check_size(size, wanted, scenario.cloth.cells()).map_err(named)?;
             let name = file.to_owned();
             match wanted {
@@ -143,7 +144,8 @@ impl Images {
                     images.rasters.insert(name, raster);
                 }
                 Wanted::Photo(_) if !images.photos.contains_key(file) => {
-                    let rgb = open(&bytes).map_err(named)?.into_rgb8();
+                    let image = file::decode(&bytes).map_err(named)?;
+                    let rgb = photo::Photo::from_image(image).picture();
                     images.photos.insert(name, Photo { rgb });
                 }
                 Wanted::Drawing(ground) if !images.drawings.contains_key(file) => {
@@ -152,7 +154,7 @@ impl Images {
                     images.drawings.insert(name, drawing);
                 }
                 Wanted::Mask if !images.masks.contains_key(file) => {
-                    let mask = mask(&bytes).map_err(named)?;
+                    let mask = mask(&path, &bytes).map_err(|why| at.problem(why))?;
                     images.masks.insert(name, mask);
                 }
                 _ => {}
@@ -190,30 +192,9 @@ fn check_size(
     ))
 }
 
-fn reader(bytes: &[u8]) -> Result<ImageReader<Cursor<&[u8]>>, String> {
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|why| format!("it cannot be read: {why}"))?;
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(memory::free());
-    reader.limits(limits);
-    Ok(reader)
-}
-
-/// The width and height of a picture, from its beginning alone.
-pub(crate) fn dimensions(bytes: &[u8]) -> Result<(usize, usize), String> {
-    let (width, height) = reader(bytes)?.into_dimensions().map_err(not_a_picture)?;
-    Ok((width as usize, height as usize))
-}
-
-/// A picture as it is in its file.
-pub(crate) fn open(bytes: &[u8]) -> Result<DynamicImage, String> {
-    reader(bytes)?.decode().map_err(not_a_picture)
-}
-
 /// Brightness from 0 to 1; what is transparent counts as black, so that only what is drawn counts.
 fn decode(bytes: &[u8]) -> Result<Raster, String> {
-    let image = open(bytes)?.to_luma_alpha32f();
+    let image = file::decode(bytes)?.to_luma_alpha32f();
     Ok(Raster {
         nx: image.width() as usize,
         ny: image.height() as usize,
@@ -224,20 +205,11 @@ fn decode(bytes: &[u8]) -> Result<Raster, String> {
     })
 }
 
-fn not_a_picture(why: image::ImageError) -> String {
-    match why {
-        image::ImageError::Unsupported(_) => {
-            format!("pictures are PNG or JPEG, and this is neither: {why}")
-        }
-        _ => format!("it is not a whole PNG or JPEG: {why}"),
-    }
-}
-
-/// Blue where the warp is on top, red where the weft is; between them the nearer one counts.
-fn mask(bytes: &[u8]) -> Result<Mask, String> {
-    let image = open(bytes)?.into_rgb8();
-    let warp_up = image.pixels().map(|pixel| pixel.0[2] > pixel.0[0]);
-    Ok(Mask::new(image.width() as usize, warp_up.collect()))
+/// A mask that is blue where the warp is on top and red where the weft is.
+fn mask(path: &Path, bytes: &[u8]) -> Result<Mask, String> {
+    let picture = photo::Photo::from_image(file::decode(bytes)?);
+    let mask = photo::Mask::read(path, &picture).map_err(|why| why.to_string())?;
+    Ok(Mask::new(mask.nx, mask.warp_on_top))
 }
 
 /// Whether a name is that of a draft that comes with the program.

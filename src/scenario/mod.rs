@@ -11,7 +11,7 @@ mod error;
 mod experiment;
 mod fabric;
 mod figure;
-pub(crate) mod images;
+mod images;
 mod library;
 mod locate;
 mod look;

@@ -21,7 +21,8 @@ use thiserror::Error;
 
 use crate::memory;
 use crate::pattern::Raster;
-use crate::scenario::{beside, images};
+use crate::photo::file;
+use crate::scenario::beside;
 
 /// The fewest pixels across and down that a drawing may have.
 pub const SMALLEST: usize = 8;
@@ -134,7 +135,7 @@ impl Drawing {
             file: file.into(),
             why,
         };
-        let (width, height) = images::dimensions(bytes).map_err(unreadable)?;
+        let (width, height) = file::dimensions(bytes).map_err(unreadable)?;
         if width < SMALLEST || height < SMALLEST {
             return Err(DrawingError::TooSmall {
                 file: file.into(),
@@ -151,7 +152,7 @@ impl Drawing {
                 needed,
             });
         }
-        let image = images::open(bytes).map_err(unreadable)?;
+        let image = file::decode(bytes).map_err(unreadable)?;
         Drawing::of(&image, ground).ok_or_else(|| DrawingError::Empty { file: file.into() })
     }
 

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use super::contrast::Contrast;
 use super::crossings::Crossings;
-use super::outline::CAMERA_BLUR;
 use super::relief::{Fit, Light, Place, REGRESSORS, Relief, fit};
 use super::yarns::Yarns;
 use crate::photo::plane::{Plane, gaussian};
@@ -36,10 +35,12 @@ pub struct Weaving<'a> {
     pub yarns: [&'a Yarns; 2],
     /// Where they cross.
     pub crossings: &'a Crossings<'a>,
-    /// For every crossing, whether the warp is on top.
-    pub warp_up: &'a [bool],
+    /// For every crossing, evidence that the warp is on top.
+    pub crossed: &'a [f32],
     /// The shape of the cloth on the whole.
     pub relief: Relief,
+    /// What the camera blurs: a standard deviation in pixels.
+    pub blur: f32,
 }
 
 /// Shift and width of single yarns beyond those of the relief, at each crossing.
@@ -62,7 +63,7 @@ impl Weaving<'_> {
         let inside = |i: i64, first: i64, n: usize| (i - first).clamp(0, n as i64 - 1) as usize;
         let e = inside(end, self.crossings.first_end, self.crossings.ends);
         let p = inside(pick, self.crossings.first_pick, self.crossings.picks);
-        if self.warp_up[p * self.crossings.ends + e] {
+        if self.crossed[p * self.crossings.ends + e] > 0.0 {
             1.0
         } else {
             -1.0
@@ -138,7 +139,7 @@ impl Weaving<'_> {
             })
             .collect();
         let regressors: Vec<Plane> = (0..REGRESSORS)
-            .map(|k| Plane::new(nx, ny, |x, y| values[y * nx + x][k]).blurred(CAMERA_BLUR))
+            .map(|k| Plane::new(nx, ny, |x, y| values[y * nx + x][k]).blurred(self.blur))
             .collect();
         fit(
             [&self.contrast.light, &self.contrast.tint],
@@ -158,7 +159,7 @@ impl Weaving<'_> {
                 light.shade(&place.regressors(place.lead() > 0.0))
             })
             .collect();
-        [0, 1].map(|k| Plane::new(nx, ny, |x, y| shades[y * nx + x][k]).blurred(CAMERA_BLUR))
+        [0, 1].map(|k| Plane::new(nx, ny, |x, y| shades[y * nx + x][k]).blurred(self.blur))
     }
 
     fn step(&self, bends: &mut Bends, light: &Fit) {

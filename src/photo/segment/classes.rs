@@ -20,70 +20,84 @@ pub struct Classes {
     pub lattice: Lattice,
     /// The class of every crossing.
     pub of: Vec<usize>,
-    /// How much better a class fits than the next, in standard errors.
-    pub certainty: Vec<f32>,
+    /// Every step of the repeat: for each class by place, the class it would be.
+    moves: Vec<Vec<usize>>,
+    /// The class of every crossing if nothing slips.
+    by_place: Vec<usize>,
+    /// How well each step fits around each crossing.
+    fits: Vec<Plane>,
+    /// How much of the photograph is around each crossing, 0 to 1.
+    seen: Plane,
+    means: Vec<[f32; FEATURES]>,
 }
 
 impl Classes {
     /// Finds the class of every crossing.
     pub fn find(crossings: &Crossings, features: &[[f32; FEATURES]], lattice: Lattice) -> Self {
-        let ends = crossings.ends;
-        let plain: Vec<usize> = (0..crossings.len())
+        let (ends, picks) = (crossings.ends, crossings.picks);
+        let by_place: Vec<usize> = (0..crossings.len())
             .map(|i| lattice.class(i % ends, i / ends))
             .collect();
         let moves: Vec<Vec<usize>> = (0..lattice.c)
             .flat_map(|dp| (0..lattice.a).map(move |de| (de, dp)))
             .map(|(de, dp)| lattice.moved(de, dp))
             .collect();
-        let whole = Plane {
-            nx: ends,
-            ny: crossings.picks,
-            values: crossings
-                .whole
-                .iter()
-                .map(|w| f32::from(u8::from(*w)))
-                .collect(),
-        };
-        let seen = whole.blurred(WINDOW);
-        let mut means = seed(crossings, features, &plain, lattice.classes());
-        let mut of = plain.clone();
-        let mut certainty = vec![0.0; of.len()];
+        let whole = |e: usize, p: usize| f32::from(u8::from(crossings.whole[p * ends + e]));
+        let mut means = seed(crossings, features, &by_place, lattice.classes());
+        let mut of = by_place.clone();
+        let mut fits = Vec::new();
         for _ in 0..ROUNDS {
-            let fits: Vec<Plane> = moves
+            fits = moves
                 .par_iter()
                 .map(|moved| {
-                    Plane::new(ends, crossings.picks, |e, p| {
+                    Plane::new(ends, picks, |e, p| {
                         let i = p * ends + e;
-                        dot(&features[i], &means[moved[plain[i]]])
+                        dot(&features[i], &means[moved[by_place[i]]])
                     })
                     .blurred(WINDOW)
                 })
-                .collect();
-            for i in 0..of.len() {
-                let (mut best, mut next) = (0, None);
-                for k in 1..moves.len() {
-                    if fits[k].values[i] > fits[best].values[i] {
-                        next = Some(best);
-                        best = k;
-                    } else if next
-                        .is_none_or(|next: usize| fits[k].values[i] > fits[next].values[i])
-                    {
-                        next = Some(k);
-                    }
-                }
-                of[i] = moves[best][plain[i]];
-                certainty[i] = next.map_or(0.0, |next| {
-                    let apart = fits[best].values[i] - fits[next].values[i];
-                    apart / error(&means, &moves[best], &moves[next]) / seen.values[i].max(0.1)
-                });
+                .collect::<Vec<Plane>>();
+            for (i, class) in of.iter_mut().enumerate() {
+                let fit = |k: &usize| fits[*k].values[i];
+                let best = (0..moves.len())
+                    .max_by(|a, b| fit(a).total_cmp(&fit(b)).then(b.cmp(a)))
+                    .unwrap_or(0);
+                *class = moves[best][by_place[i]];
             }
             means = class_means(crossings, features, &of, lattice.classes());
         }
         Classes {
             lattice,
             of,
-            certainty,
+            moves,
+            by_place,
+            fits,
+            seen: Plane::new(ends, picks, whole).blurred(WINDOW),
+            means,
         }
+    }
+
+    /// Evidence for every crossing that its class is one of those with the warp on top: how much better
+    /// some step of the repeat fits that says so than any that says otherwise, in standard errors.
+    pub fn evidence(&self, warp_up: &[bool]) -> Vec<f32> {
+        let best = |i: usize, up: bool| {
+            let says = |k: &usize| warp_up[self.moves[*k][self.by_place[i]]] == up;
+            let fit = |k: &usize| self.fits[*k].values[i];
+            (0..self.moves.len())
+                .filter(says)
+                .max_by(|a, b| fit(a).total_cmp(&fit(b)).then(b.cmp(a)))
+        };
+        (0..self.of.len())
+            .into_par_iter()
+            .map(|i| match (best(i, true), best(i, false)) {
+                (Some(up), Some(down)) => {
+                    let apart = self.fits[up].values[i] - self.fits[down].values[i];
+                    let error = error(&self.means, &self.moves[up], &self.moves[down]);
+                    apart / error / self.seen.values[i].max(0.1)
+                }
+                _ => 0.0,
+            })
+            .collect()
     }
 }
 

@@ -97,4 +97,12 @@ impl Contrast {
             tint: scaled(&tint),
         }
     }
+
+    /// Freed from what is finer than `sigma` pixels.
+    pub fn softened(&self, sigma: f32) -> Self {
+        Contrast {
+            light: self.light.blurred(sigma),
+            tint: self.tint.blurred(sigma),
+        }
+    }
 }

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::bends::{Bends, Weaving};
-use super::classes::Classes;
 use super::relief::Fit;
 use super::sides::Sides;
 use crate::photo::Mask;
@@ -11,8 +10,6 @@ use crate::photo::plane::Plane;
 
 /// The lead of one yarn over the other, in pitches, that makes its chance e times as great.
 const LEAD: f32 = 0.1;
-/// The same in standard errors of how well a crossing fits its class.
-const CERTAINTY: f32 = 1.0;
 /// How much of what colour says counts: neighbouring pixels say much the same.
 const COLOUR: f32 = 0.5;
 /// Pixels over which colour is averaged: a standard deviation.
@@ -24,18 +21,16 @@ const MOST: f32 = 30.0;
 /// Returns the mask, and for every pixel the chance that it is wrong.
 pub fn decide(
     weaving: &Weaving,
-    classes: &Classes,
     sides: &Sides,
     factor: usize,
     (nx, ny): (usize, usize),
 ) -> (Mask, Vec<f32>) {
     let (bends, light) = weaving.bends();
-    let colour = (sides.coloured > 0.0).then(|| colour(weaving, &bends, light, classes, sides));
-    // How much the weave says at each crossing: 1 that it is as its class has it, 0 nothing.
-    let trust: Vec<f32> = classes
-        .certainty
+    let colour = (sides.coloured > 0.0).then(|| colour(weaving, &bends, light, sides));
+    let trust: Vec<f32> = weaving
+        .crossed
         .iter()
-        .map(|certainty| 2.0 * chance(certainty / CERTAINTY) - 1.0)
+        .map(|crossed| trust(*crossed))
         .collect();
     let evidence: Vec<f32> = (0..nx * ny)
         .into_par_iter()
@@ -74,26 +69,28 @@ fn nearest(weaving: &Weaving, x: f32, y: f32) -> usize {
     weaving.crossings.at_pixel(inside(x, nx), inside(y, ny))
 }
 
+/// How much the weave says at a crossing with this evidence: 1 all, 0 nothing.
+fn trust(crossed: f32) -> f32 {
+    2.0 * chance(crossed.abs()) - 1.0
+}
+
 /// The chance that goes with evidence: the logistic function.
 fn chance(evidence: f32) -> f32 {
     (1.0 / (1.0 + libm::exp(-f64::from(evidence)))) as f32
 }
 
 /// What colour says, pixel by pixel: how much better warp explains it than weft.
-fn colour(weaving: &Weaving, bends: &Bends, light: Fit, classes: &Classes, sides: &Sides) -> Plane {
+fn colour(weaving: &Weaving, bends: &Bends, light: Fit, sides: &Sides) -> Plane {
     let first = compared(weaving, bends, &light, sides);
     // Once more with the light of the pixels that are now known better.
     let (nx, ny) = (first.nx, first.ny);
-    let trust = |x: usize, y: usize| {
-        let certainty = classes.certainty[weaving.crossings.at_pixel(x, y)];
-        2.0 * chance(certainty / CERTAINTY) - 1.0
-    };
     let warp: Vec<bool> = (0..nx * ny)
         .into_par_iter()
         .map(|i| {
             let (x, y) = (i % nx, i / nx);
             let lead = weaving.place(bends, x as f32, y as f32).lead();
-            trust(x, y) * lead / LEAD + first.values[i] > 0.0
+            trust(weaving.crossed[weaving.crossings.at_pixel(x, y)]) * lead / LEAD + first.values[i]
+                > 0.0
         })
         .collect();
     let light = weaving.light(bends, Some(&warp));

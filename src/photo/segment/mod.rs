@@ -22,6 +22,7 @@ mod pitch;
 mod relief;
 mod repeat;
 mod sides;
+mod single;
 mod spectrum;
 mod weave;
 mod yarns;
@@ -31,7 +32,7 @@ use bends::Weaving;
 use classes::Classes;
 use contrast::{Contrast, Lab};
 use crossings::Crossings;
-use outline::find as find_outline;
+use outline::Outline;
 use pitch::{PITCHES, Wave, waves};
 use repeat::Explained;
 use sides::Sides;
@@ -52,6 +53,9 @@ const EVEN_LIGHT_PITCHES: f64 = 3.0;
 const LEAST_REDUCED_PITCH: f64 = 7.0;
 /// Yarns wider than this are looked at in a smaller photograph.
 const WIDE_PITCH: f64 = 14.0;
+/// What is finer than this is not looked at in crossings, pitches and pixels: a standard deviation.
+const SOFTENED_PITCHES: f64 = 0.08;
+const LEAST_SOFTENED: f32 = 0.5;
 /// Pixels along a side of the part on which pitches are tried.
 const TRIED_SIDE: usize = 640;
 /// At most so many pairs of pitches are tried.
@@ -150,28 +154,30 @@ impl Pair {
         }
     }
 
-    /// The yarns and crossings of a photograph that was made smaller, given to `then`.
-    fn look<T>(
-        &self,
-        lab: &Lab,
-        then: impl FnOnce(&Contrast, [&Yarns; 2], &Crossings) -> Option<T>,
-    ) -> Option<T> {
-        let contrast = Contrast::of(lab, (EVEN_LIGHT_PITCHES * self.pitch()) as f32);
+    fn contrast(&self, lab: &Lab) -> Contrast {
+        Contrast::of(lab, (EVEN_LIGHT_PITCHES * self.pitch()) as f32)
+    }
+
+    fn yarns(&self, contrast: &Contrast) -> [Yarns; 2] {
         let coarser = self.waves[0].pitch().max(self.waves[1].pitch());
-        let [warp, weft] = self
-            .waves
-            .map(|wave| Yarns::follow(&contrast, wave, coarser));
-        let crossings = Crossings::of(&contrast, &warp, &weft)?;
-        then(&contrast, [&warp, &weft], &crossings)
+        self.waves
+            .map(|wave| Yarns::follow(contrast, wave, coarser))
+    }
+
+    /// What crossings are looked at in: without noise finer than any yarn, which would also beat with
+    /// the grid of pixels.
+    fn softened(&self, contrast: &Contrast) -> Contrast {
+        contrast.softened(((SOFTENED_PITCHES * self.pitch()) as f32).max(LEAST_SOFTENED))
     }
 
     /// How well the weave of these yarns repeats, in the middle of the photograph.
     fn tried(&self, lab: &Lab, hints: &Hints) -> Option<Explained> {
         let part = lab.reduced(self.factor).middle(TRIED_SIDE);
-        self.look(&part, |_, _, crossings| {
-            let features = crossings.features();
-            repeat_of(crossings, &features, hints)
-        })
+        let contrast = self.contrast(&part);
+        let [warp, weft] = self.yarns(&contrast);
+        let soft = self.softened(&contrast);
+        let crossings = Crossings::of(&soft, &warp, &weft)?;
+        repeat_of(&crossings, &crossings.features(), hints)
     }
 }
 
@@ -230,7 +236,11 @@ fn search(lab: &Lab, hints: &Hints) -> Result<Pair, PhotoError> {
             break;
         }
         let pair = pair.handy();
-        if pair.tried(lab, hints).is_some_and(Explained::is_certain) {
+        let t = pair.tried(lab, hints);
+        if std::env::var("DYEDBG").is_ok() {
+            eprintln!("DBG try {:?} score {:.2} {:?}", pitch, pair.score(), t);
+        }
+        if t.is_some_and(Explained::is_certain) {
             return Ok(pair);
         }
         tried.push((pitch, false));
@@ -303,62 +313,102 @@ fn given(lab: &Lab, pitch: [f64; 2], hints: &Hints) -> Result<Pair, PhotoError> 
     }
 }
 
+/// A weave as far as it is known from looking at crossings.
+struct Woven {
+    explained: Explained,
+    /// Evidence for every crossing that the warp is on top.
+    crossed: Vec<f32>,
+    sides: Sides,
+    outline: Outline,
+}
+
 impl Pair {
     fn segment(&self, lab: &Lab, hints: &Hints) -> Result<Segmentation, PhotoError> {
-        let reduced = lab.reduced(self.factor);
         let few = || PhotoError::NoCloth {
             path: None,
             why: format!(
                 "it has too few yarns to tell the weave by; at least {LEAST_YARNS} each way are needed"
             ),
         };
-        self.look(&reduced, |contrast, yarns, crossings| {
-            if yarns.iter().any(|yarns| yarns.count() < LEAST_YARNS) {
-                return None;
-            }
-            let features = crossings.features();
-            let explained = repeat_of(crossings, &features, hints)?;
-            let classes = Classes::find(crossings, &features, explained.lattice);
-            let known = hints
-                .weave
-                .as_ref()
-                .map(|weave| weave.sides(explained.lattice));
-            let sides = Sides::find(crossings, &classes, known.as_deref())?;
-            let (relief, _) = find_outline(contrast, yarns, crossings, &classes, &sides);
-            let warp_up: Vec<bool> = classes
-                .of
-                .iter()
-                .map(|class| sides.warp_up[*class])
-                .collect();
-            let weaving = Weaving {
-                contrast,
-                yarns,
-                crossings,
-                warp_up: &warp_up,
-                relief,
+        let contrast = self.contrast(&lab.reduced(self.factor));
+        let soft = self.softened(&contrast);
+        let [warp, weft] = self.yarns(&contrast);
+        if warp.count() < LEAST_YARNS || weft.count() < LEAST_YARNS {
+            return Err(few());
+        }
+        // Light from one side makes yarns seem to lie aside. Once their outline is known, crossings are
+        // looked at again.
+        let first = woven(&contrast, &soft, [&warp, &weft], hints, None).ok_or_else(few)?;
+        let [du, dv] = first.outline.relief.shift;
+        let mut begin = first.outline;
+        begin.relief.shift = [0.0; 2];
+        let (warp, weft) = (warp.shifted(du), weft.shifted(dv));
+        let yarns = [&warp, &weft];
+        let crossings = Crossings::of(&soft, &warp, &weft).ok_or_else(few)?;
+        let Woven {
+            explained,
+            crossed,
+            sides,
+            outline,
+        } = woven(&contrast, &soft, yarns, hints, Some(begin)).ok_or_else(few)?;
+        let weaving = Weaving {
+            contrast: &contrast,
+            yarns,
+            crossings: &crossings,
+            crossed: &crossed,
+            relief: outline.relief,
+            blur: outline.blur,
+        };
+        let (mask, doubt) = decide::decide(&weaving, &sides, self.factor, lab.size());
+        let turned = |k: usize| {
+            let [fx, fy] = self.waves[k].frequency;
+            let angle = if k == 0 {
+                libm::atan2(fy, fx)
+            } else {
+                -libm::atan2(fx, fy)
             };
-            let (mask, doubt) = decide::decide(&weaving, &classes, &sides, self.factor, lab.size());
-            let turned = |k: usize| {
-                let [fx, fy] = self.waves[k].frequency;
-                let angle = if k == 0 {
-                    libm::atan2(fy, fx)
-                } else {
-                    -libm::atan2(fx, fy)
-                };
-                angle.to_degrees()
-            };
-            Some(Segmentation {
-                mask,
-                doubt,
-                pitch: self.waves.map(|wave| wave.pitch() * self.factor as f64),
-                turned: [turned(0), turned(1)],
-                yarns: yarns.map(Yarns::count),
-                weave: Seen::of(explained.lattice, &sides.warp_up),
-                regularity: explained.share,
-                sure: sides.sure,
-                coloured: sides.coloured,
-            })
+            angle.to_degrees()
+        };
+        Ok(Segmentation {
+            mask,
+            doubt,
+            pitch: self.waves.map(|wave| wave.pitch() * self.factor as f64),
+            turned: [turned(0), turned(1)],
+            yarns: yarns.map(Yarns::count),
+            weave: Seen::of(explained.lattice, &sides.warp_up),
+            regularity: explained.share,
+            sure: sides.sure,
+            coloured: sides.coloured,
         })
-        .ok_or_else(few)
     }
+}
+
+fn woven(
+    contrast: &Contrast,
+    soft: &Contrast,
+    yarns: [&Yarns; 2],
+    hints: &Hints,
+    begin: Option<Outline>,
+) -> Option<Woven> {
+    let crossings = Crossings::of(soft, yarns[0], yarns[1])?;
+    let features = crossings.features();
+    let explained = repeat_of(&crossings, &features, hints)?;
+    let classes = Classes::find(&crossings, &features, explained.lattice);
+    let known = hints
+        .weave
+        .as_ref()
+        .map(|weave| weave.sides(explained.lattice));
+    let likely = Sides::likely(&crossings, &classes, known.as_deref());
+    let (sides, outline, left) =
+        outline::find(contrast, yarns, &crossings, &classes, &likely, begin)?;
+    if std::env::var("DYEDBG").is_ok() {
+        eprintln!("DBG {explained:?} {sides:?} {outline:?} left {left:.3}");
+    }
+    let crossed = single::evidence(&crossings, &features, &classes, &sides);
+    Some(Woven {
+        explained,
+        crossed,
+        sides,
+        outline,
+    })
 }

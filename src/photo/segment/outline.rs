@@ -6,12 +6,11 @@ use super::classes::Classes;
 use super::contrast::Contrast;
 use super::crossings::Crossings;
 use super::relief::{Fit, Place, REGRESSORS, Relief, fit};
+use super::repeat::Lattice;
 use super::sides::Sides;
 use super::yarns::Yarns;
 use crate::photo::plane::Plane;
 
-/// What a camera blurs, as a standard deviation in pixels.
-pub const CAMERA_BLUR: f32 = 0.6;
 /// Bins along a side of a crossing, of small and of large repeats.
 const BINS: usize = 16;
 const FEWER_BINS: usize = 10;
@@ -21,18 +20,20 @@ const SMALL_REPEAT: usize = 16;
 const MOST_PIXELS: f32 = 8.0;
 /// What makes yarns of another width than the pitch a little less likely.
 const WIDTH_PRIOR: f64 = 0.01;
-/// Where the five numbers of a relief may lie.
-const RANGE: [(f32, f32); 5] = [
+/// Where the five numbers of a relief, and the blur of the camera in pixels, may lie.
+const RANGE: [(f32, f32); 6] = [
     (-0.25, 0.25),
     (-0.25, 0.25),
     (0.6, 1.0),
     (0.6, 1.0),
     (0.1, 1.1),
+    (0.3, 2.0),
 ];
 /// The first steps of the search.
-const STEPS: [f32; 5] = [0.08, 0.08, 0.08, 0.08, 0.15];
+const STEPS: [f32; 6] = [0.08, 0.08, 0.08, 0.08, 0.15, 0.3];
 /// Times that steps are halved.
-const HALVINGS: usize = 3;
+const HALVINGS: usize = 4;
+const ROUGHLY: usize = 2;
 /// Rounds over all numbers before steps are halved.
 const ROUNDS: usize = 2;
 
@@ -43,45 +44,74 @@ struct Repeat {
     weight: Plane,
     bins: usize,
     aspect: [f32; 2],
-    /// The camera's blur in bins.
-    blur: f32,
-    /// 1 where the warp is on top, else −1, by pick and end.
-    up: Vec<f32>,
+    /// Bins to a pixel.
+    fineness: f32,
     ends: usize,
     picks: usize,
 }
 
-/// The relief of a cloth and how well it explains the photograph's mean repeat.
+/// The shape of a cloth as a camera sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outline {
+    /// The shape.
+    pub relief: Relief,
+    /// What the camera blurs: a standard deviation in pixels.
+    pub blur: f32,
+}
+
+/// The sides and the outline that explain the photograph's mean repeat best, and the share of its
+/// variance that they leave. The search begins at `begin`, too, if
+/// that is known.
 pub fn find(
     contrast: &Contrast,
     yarns: [&Yarns; 2],
     crossings: &Crossings,
     classes: &Classes,
-    sides: &Sides,
-) -> (Relief, f64) {
-    let repeat = Repeat::of(contrast, yarns, crossings, classes, sides);
-    let starts: Vec<[f32; 5]> = (0..8)
+    likely: &[Sides],
+    begin: Option<Outline>,
+) -> Option<(Sides, Outline, f64)> {
+    let repeat = Repeat::of(contrast, yarns, crossings, classes);
+    let mut starts: Vec<Numbers> = (0..8)
         .map(|i| {
-            let shift = |bit: usize| if i >> bit & 1 == 1 { 0.12 } else { 0.0 };
+            let one = |bit: usize| i >> bit & 1 == 1;
+            let shift = |bit: usize| if one(bit) { 0.12 } else { -0.12 };
             [
                 shift(0),
                 shift(1),
                 0.9,
                 0.9,
-                if i >> 2 & 1 == 1 { 0.7 } else { 0.3 },
+                if one(2) { 0.7 } else { 0.3 },
+                0.6,
             ]
         })
         .collect();
-    let found: Vec<(f64, [f32; 5])> = starts
-        .into_par_iter()
-        .map(|start| repeat.descend(start))
-        .collect();
-    let (_, best) = found
-        .into_iter()
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .unwrap_or((1.0, [0.0, 0.0, 0.9, 0.9, 0.5]));
-    let relief = Relief::from_numbers(best);
-    (relief, repeat.fit(relief).share)
+    starts.extend(begin.map(Outline::numbers));
+    // Which sides they are is plain after a few steps.
+    let roughly: Vec<Numbers> = starts[..4].to_vec();
+    let sides = match likely {
+        [one] => one,
+        _ => repeat.best(classes.lattice, likely, &roughly, ROUGHLY)?.0,
+    };
+    let sides = std::slice::from_ref(sides);
+    let (sides, cost, numbers) = repeat.best(classes.lattice, sides, &starts, HALVINGS)?;
+    Some((sides.clone(), Outline::from_numbers(numbers), cost))
+}
+
+/// The numbers of a relief, and the blur.
+type Numbers = [f32; 6];
+
+impl Outline {
+    fn numbers(self) -> Numbers {
+        let [u, v, warp, weft, crimp] = self.relief.numbers();
+        [u, v, warp, weft, crimp, self.blur]
+    }
+
+    fn from_numbers([u, v, warp, weft, crimp, blur]: Numbers) -> Self {
+        Outline {
+            relief: Relief::from_numbers([u, v, warp, weft, crimp]),
+            blur,
+        }
+    }
 }
 
 impl Repeat {
@@ -90,7 +120,6 @@ impl Repeat {
         yarns: [&Yarns; 2],
         crossings: &Crossings,
         classes: &Classes,
-        sides: &Sides,
     ) -> Self {
         let lattice = classes.lattice;
         let (ends, picks) = lattice.repeat();
@@ -136,30 +165,65 @@ impl Repeat {
             weight: Plane::new(nx, ny, |x, y| counts[index(x, y)].min(MOST_PIXELS)),
             bins,
             aspect: pitches.map(|pitch| (pitch / middle) as f32),
-            blur: CAMERA_BLUR * bins as f32 / middle as f32,
-            up: (0..picks)
-                .flat_map(|p| (0..ends).map(move |e| (e, p)))
-                .map(|(e, p)| {
-                    if sides.warp_up[lattice.class(e, p)] {
-                        1.0
-                    } else {
-                        -1.0
-                    }
-                })
-                .collect(),
+            fineness: bins as f32 / middle as f32,
             ends,
             picks,
         }
     }
 
-    fn fit(&self, relief: Relief) -> Fit {
-        let (nx, ny) = (self.light.nx, self.light.ny);
-        let up = |e: i64, p: i64| {
-            let e = e.rem_euclid(self.ends as i64) as usize;
-            let p = p.rem_euclid(self.picks as i64) as usize;
-            self.up[p * self.ends + e]
+    /// The sides and the start that lead to the lowest cost, and where they lead to.
+    fn best<'s>(
+        &self,
+        lattice: Lattice,
+        sides: &'s [Sides],
+        starts: &[Numbers],
+        halvings: usize,
+    ) -> Option<(&'s Sides, f64, Numbers)> {
+        let of = |sides: &'s Sides| starts.iter().map(move |start| (sides, *start));
+        let ways: Vec<(&Sides, Numbers)> = sides.iter().flat_map(of).collect();
+        let found: Vec<_> = ways
+            .into_par_iter()
+            .map(|(sides, start)| {
+                let (cost, numbers) = self.woven(lattice, sides).descend(start, halvings);
+                (sides, cost, numbers)
+            })
+            .collect();
+        found.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn woven(&self, lattice: Lattice, sides: &Sides) -> Woven<'_> {
+        let crossings = (0..self.picks).flat_map(|p| (0..self.ends).map(move |e| (e, p)));
+        let up = |(e, p)| {
+            if sides.warp_up[lattice.class(e, p)] {
+                1.0
+            } else {
+                -1.0
+            }
         };
-        let middle = |i: usize| (i as f64 + 0.5) / self.bins as f64;
+        Woven {
+            repeat: self,
+            up: crossings.map(up).collect(),
+        }
+    }
+}
+
+/// A repeat with its weave.
+struct Woven<'a> {
+    repeat: &'a Repeat,
+    /// 1 where the warp is on top, else −1, by pick and end.
+    up: Vec<f32>,
+}
+
+impl Woven<'_> {
+    fn fit(&self, outline: Outline) -> Fit {
+        let repeat = self.repeat;
+        let (nx, ny) = (repeat.light.nx, repeat.light.ny);
+        let up = |e: i64, p: i64| {
+            let e = e.rem_euclid(repeat.ends as i64) as usize;
+            let p = p.rem_euclid(repeat.picks as i64) as usize;
+            self.up[p * repeat.ends + e]
+        };
+        let middle = |i: usize| (i as f64 + 0.5) / repeat.bins as f64;
         let mut regressors: Vec<Plane> = (0..REGRESSORS)
             .map(|_| Plane {
                 nx,
@@ -169,7 +233,7 @@ impl Repeat {
             .collect();
         for y in 0..ny {
             for x in 0..nx {
-                let place = Place::new(&relief, self.aspect, [middle(x), middle(y)], up);
+                let place = Place::new(&outline.relief, repeat.aspect, [middle(x), middle(y)], up);
                 let values = place.regressors(place.lead() > 0.0);
                 for (plane, value) in regressors.iter_mut().zip(values) {
                     plane.values[y * nx + x] = value;
@@ -178,24 +242,28 @@ impl Repeat {
         }
         let blurred: Vec<Plane> = regressors
             .iter()
-            .map(|plane| plane.blurred_around(self.blur))
+            .map(|plane| plane.blurred_around(outline.blur * repeat.fineness))
             .collect();
-        fit([&self.light, &self.tint], Some(&self.weight), &blurred)
+        fit(
+            [&repeat.light, &repeat.tint],
+            Some(&repeat.weight),
+            &blurred,
+        )
     }
 
-    fn cost(&self, numbers: [f32; 5]) -> f64 {
+    fn cost(&self, numbers: Numbers) -> f64 {
         let width = |k: usize| f64::from((1.0 - numbers[k]) * (1.0 - numbers[k]));
-        self.fit(Relief::from_numbers(numbers)).share + WIDTH_PRIOR * (width(2) + width(3))
+        self.fit(Outline::from_numbers(numbers)).share + WIDTH_PRIOR * (width(2) + width(3))
     }
 
     /// Goes from a start to lower cost, one number at a time.
-    fn descend(&self, start: [f32; 5]) -> (f64, [f32; 5]) {
+    fn descend(&self, start: Numbers, halvings: usize) -> (f64, Numbers) {
         let mut here = start;
         let mut cost = self.cost(here);
         let mut steps = STEPS;
-        for _ in 0..HALVINGS {
+        for _ in 0..halvings {
             for _ in 0..ROUNDS {
-                for k in 0..5 {
+                for k in 0..start.len() {
                     for step in [-steps[k], steps[k]] {
                         let mut there = here;
                         there[k] += step;

@@ -16,7 +16,7 @@ const WITHIN: f64 = 1.3;
 /// At most so many of one axis are tried.
 const MOST_TRIED: usize = 3;
 /// Pitches that can be found in one size of the photograph, pixels.
-pub const PITCHES: (f64, f64) = (2.1, 20.0);
+pub const PITCHES: (f64, f64) = (2.1, 32.0);
 
 /// A wave across yarns: the yarns of one direction, as the spectrum shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -16,7 +16,7 @@ pub const REGRESSORS: usize = 2 * TERMS + 1;
 /// How tall a yarn of a pitch's width stands above its axis, in pitches.
 const ROUND: f32 = 0.4;
 /// How fast a yarn falls away beyond its edge, in its radii.
-const BEYOND: f32 = 2.0;
+const BEYOND: f32 = 6.0;
 
 /// The shape of the cloth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -181,7 +181,7 @@ pub fn fit(picture: [&Plane; 2], weight: Option<&Plane>, regressors: &[Plane]) -
     let nx = picture[0].nx;
     for row in (0..count).step_by(nx) {
         let of = |plane: &'_ Plane| plane.values[row..row + nx].to_vec();
-        let weights = weight.map_or_else(|| vec![1.0; nx], |weight| of(weight));
+        let weights = weight.map_or_else(|| vec![1.0; nx], of);
         let weighted = |plane: &Plane| -> Vec<f32> {
             plane.values[row..row + nx]
                 .iter()
@@ -246,10 +246,8 @@ fn solve(
 ) -> [[f64; 2]; REGRESSORS] {
     for i in 0..REGRESSORS {
         for j in 0..=i {
-            let mut sum = a[i][j];
-            for k in 0..j {
-                sum -= a[i][k] * a[j][k];
-            }
+            let known: f64 = a[i][..j].iter().zip(&a[j][..j]).map(|(x, y)| x * y).sum();
+            let sum = a[i][j] - known;
             a[i][j] = if i == j {
                 libm::sqrt(sum.max(1e-12))
             } else {
@@ -257,15 +255,23 @@ fn solve(
             };
         }
     }
-    for side in 0..2 {
-        for i in 0..REGRESSORS {
-            let known: f64 = (0..i).map(|k| a[i][k] * b[k][side]).sum();
-            b[i][side] = (b[i][side] - known) / a[i][i];
+    let row = |known: [f64; 2], b: [f64; 2], pivot: f64| {
+        [0, 1].map(|side| (b[side] - known[side]) / pivot)
+    };
+    let sum = |b: &[[f64; 2]], weight: &dyn Fn(usize) -> f64| {
+        let mut sum = [0.0; 2];
+        for (k, b) in b.iter().enumerate() {
+            (0..2).for_each(|side| sum[side] += weight(k) * b[side]);
         }
-        for i in (0..REGRESSORS).rev() {
-            let known: f64 = (i + 1..REGRESSORS).map(|k| a[k][i] * b[k][side]).sum();
-            b[i][side] = (b[i][side] - known) / a[i][i];
-        }
+        sum
+    };
+    for i in 0..REGRESSORS {
+        let known = sum(&b[..i], &|k| a[i][k]);
+        b[i] = row(known, b[i], a[i][i]);
+    }
+    for i in (0..REGRESSORS).rev() {
+        let known = sum(&b[i + 1..], &|k| a[i + 1 + k][i]);
+        b[i] = row(known, b[i], a[i][i]);
     }
     b
 }

@@ -8,18 +8,23 @@
 
 use rayon::prelude::*;
 
-use super::crossings::{Crossings, FEATURES};
+use super::crossings::{Crossings, FEATURES, weights};
 
 /// The most classes of a repeat that is looked for.
-pub const MOST_CLASSES: usize = 16;
+const MOST_CLASSES: usize = 32;
+/// The most of which every lattice is tried. Of those with more, only the ones of herringbones and the
+/// like, in rectangles or shifted by half.
+const MOST_OF_ANY_LATTICE: usize = 16;
 /// Crossings along a side of a block, if there are enough.
 const BLOCK: usize = 9;
 /// The most crossings that lattices are tried on.
-const MOST_TRIED: usize = 30_000;
+const MOST_TRIED: usize = 15_000;
 /// Features that are independent of each other, about.
-const INDEPENDENT: f64 = 10.0;
-/// How far what a repeat explains must lie above what chance makes, in standard errors.
-const LEAST_CERTAINTY: f64 = 6.0;
+const INDEPENDENT: f64 = 5.0;
+/// How far what a repeat explains must lie above what chance makes, in standard errors: so much, and so
+/// much more for every class, for there are the more repeats to choose from.
+const LEAST_CERTAINTY: f64 = 3.5;
+const CERTAINTY_PER_CLASS: f64 = 0.25;
 /// How much of all variance a repeat must explain.
 const LEAST_EXPLAINED: f64 = 0.006;
 
@@ -79,6 +84,9 @@ impl Lattice {
                 (0..a).map(move |b| Lattice { a, b, c })
             })
             .filter(|lattice| lattice.c > 1 || lattice.b > 0)
+            .filter(move |lattice| {
+                classes <= MOST_OF_ANY_LATTICE || lattice.b == 0 || 2 * lattice.b == lattice.a
+            })
     }
 }
 
@@ -98,9 +106,14 @@ pub struct Explained {
 }
 
 impl Explained {
+    fn certainty(self) -> f64 {
+        self.share / self.error
+    }
+
     /// Whether this can hardly be chance.
     pub fn is_certain(self) -> bool {
-        self.share > LEAST_EXPLAINED && self.share > LEAST_CERTAINTY * self.error
+        let least = LEAST_CERTAINTY + CERTAINTY_PER_CLASS * self.lattice.classes() as f64;
+        self.share > LEAST_EXPLAINED && self.certainty() > least
     }
 }
 
@@ -108,21 +121,26 @@ impl Explained {
 pub fn find(crossings: &Crossings, features: &[[f32; FEATURES]]) -> Option<Explained> {
     let blocks = Blocks::of(crossings);
     let lattices: Vec<Lattice> = (2..=MOST_CLASSES).flat_map(Lattice::all).collect();
-    let tried: Vec<Explained> = lattices
+    let tried: Vec<[Explained; 2]> = lattices
         .par_iter()
         .filter_map(|lattice| blocks.explained(crossings, features, *lattice))
         .collect();
-    let best = *tried.iter().max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let best = |k: usize| {
+        let of = tried.iter().map(|explained| explained[k]);
+        of.max_by(|a, b| a.share.total_cmp(&b.share))
+    };
+    let k = usize::from(best(1)?.certainty() > best(0)?.certainty());
+    let best = best(k)?;
+    let tried = || tried.iter().map(|explained| explained[k]);
     // Lattices come in the order of their classes. A coarser part of the true one explains less, a
-    // finer one as much, and a little more or less by chance.
+    // finer one as much, and of so many some a little more by chance.
     let nearly = |one: &Explained| {
         let apart = best.share - one.share;
         let error = libm::sqrt(one.error * one.error + best.error * best.error);
-        one.share > 0.85 * best.share || (one.share > 0.5 * best.share && apart < 2.5 * error)
+        one.share > 0.85 * best.share || (one.share > 0.4 * best.share && apart < 3.5 * error)
     };
-    let classes = tried.iter().find(|one| nearly(one))?.lattice.classes();
-    tried
-        .into_iter()
+    let classes = tried().find(nearly)?.lattice.classes();
+    tried()
         .filter(|one| one.lattice.classes() == classes)
         .max_by(|a, b| a.share.total_cmp(&b.share))
 }
@@ -133,7 +151,10 @@ pub fn explained(
     features: &[[f32; FEATURES]],
     lattice: Lattice,
 ) -> Option<Explained> {
-    Blocks::of(crossings).explained(crossings, features, lattice)
+    let explained = Blocks::of(crossings).explained(crossings, features, lattice)?;
+    explained
+        .into_iter()
+        .max_by(|a, b| a.certainty().total_cmp(&b.certainty()))
 }
 
 /// The middle part of the crossings, in blocks.
@@ -172,7 +193,7 @@ impl Blocks {
         crossings: &Crossings,
         features: &[[f32; FEATURES]],
         lattice: Lattice,
-    ) -> Option<Explained> {
+    ) -> Option<[Explained; 2]> {
         let classes = lattice.classes();
         let blocks = self.count.0 * self.count.1;
         let mut means = vec![[0.0_f32; FEATURES]; blocks * classes];
@@ -215,45 +236,152 @@ impl Blocks {
                 }
             }
         }
-        let mut products = Vec::new();
-        let mut chance = 0.0;
+        let cells: Vec<f64> = counts
+            .chunks_exact(classes)
+            .zip(&good)
+            .map(|(counts, good)| {
+                if *good {
+                    counts.iter().sum::<usize>() as f64
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let weighted: Vec<f64> = means
+            .iter()
+            .enumerate()
+            .flat_map(|(k, mean)| {
+                let weight = cells[k / classes];
+                mean.iter().map(move |value| weight * f64::from(*value))
+            })
+            .collect();
+        Some([
+            self.near(&weighted, &cells, lattice)?,
+            self.all(&weighted, &cells, lattice)?,
+        ])
+    }
+
+    /// From blocks that touch at a corner: whatever slips, hardly slips there.
+    fn near(&self, weighted: &[f64], cells: &[f64], lattice: Lattice) -> Option<Explained> {
+        let per_block = weighted.len() / cells.len();
+        let classes = lattice.classes() as f64;
+        let of = |block: usize| &weighted[block * per_block..][..per_block];
+        let mut pairs = Vec::new();
         for y in 0..self.count.1 - 1 {
             for x in 0..self.count.0 - 1 {
                 let at = |i: usize, j: usize| (y + j) * self.count.0 + x + i;
                 for (one, other) in [(at(0, 0), at(1, 1)), (at(1, 0), at(0, 1))] {
-                    if !good[one] || !good[other] {
-                        continue;
-                    }
-                    let of = |block: usize| &means[block * classes..][..classes];
-                    let product: f64 = of(one)
-                        .iter()
-                        .zip(of(other))
-                        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>())
-                        .sum();
-                    products.push(product / (classes * FEATURES) as f64);
-                    let each = counts[one * classes..][..classes].iter().sum::<usize>();
-                    chance += classes as f64 / each as f64;
+                    let product: f64 = of(one).iter().zip(of(other)).map(|(a, b)| a * b).sum();
+                    pairs.push((
+                        cells[one] * cells[other],
+                        product / (classes * weight_of_features()),
+                    ));
                 }
             }
         }
-        let n = products.len() as f64;
-        if products.is_empty() {
+        let weight: f64 = pairs.iter().map(|(weight, _)| weight).sum();
+        if weight <= 0.0 {
             return None;
         }
-        let share = products.iter().sum::<f64>() / n;
-        let variance = products
-            .iter()
-            .map(|p| (p - share) * (p - share))
-            .sum::<f64>()
-            / n;
+        let share = pairs.iter().map(|(_, product)| product).sum::<f64>() / weight;
+        let spread = pairs.iter().map(|(weight, product)| {
+            let apart = product - weight * share;
+            apart * apart
+        });
+        let spread = libm::sqrt(spread.sum::<f64>()) / weight;
         // With few blocks their spread says little; then what chance makes of such means counts.
-        let chance = chance / n / libm::sqrt(classes as f64 * INDEPENDENT);
+        let chance = chance(lattice, weight);
         Some(Explained {
             lattice,
             share,
-            error: libm::sqrt(variance.max(chance * chance) / n),
+            error: spread.max(chance),
         })
     }
+
+    /// From all blocks that share no yarn: the most certain if nothing slips.
+    fn all(&self, weighted: &[f64], cells: &[f64], lattice: Lattice) -> Option<Explained> {
+        let (nx, ny) = self.count;
+        let share = |left_out: &dyn Fn(usize, usize) -> bool| {
+            let (product, weight) = self.products(weighted, cells, lattice, left_out);
+            (weight > 0.0).then(|| product / weight)
+        };
+        let all = share(&|_, _| false)?;
+        // How much it hangs on single yarns: the jackknife, over columns and over rows of blocks.
+        let spread = |shares: Vec<f64>| {
+            let n = shares.len() as f64;
+            let mean = shares.iter().sum::<f64>() / n;
+            let squares = shares.iter().map(|share| (share - mean) * (share - mean));
+            squares.sum::<f64>() * (n - 1.0) / n
+        };
+        let columns = (0..nx)
+            .map(|x| share(&|i, _| i == x))
+            .collect::<Option<_>>()?;
+        let rows = (0..ny)
+            .map(|y| share(&|_, j| j == y))
+            .collect::<Option<_>>()?;
+        let (_, weight) = self.products(weighted, cells, lattice, &|_, _| false);
+        let chance = chance(lattice, 0.5 * weight);
+        Some(Explained {
+            lattice,
+            share: all,
+            error: libm::sqrt(spread(columns) + spread(rows)).max(chance),
+        })
+    }
+
+    /// The products of the means of all pairs of blocks that share neither row nor column, and of their
+    /// sizes, without the blocks that are left out; each pair twice.
+    fn products(
+        &self,
+        weighted: &[f64],
+        cells: &[f64],
+        lattice: Lattice,
+        left_out: &dyn Fn(usize, usize) -> bool,
+    ) -> (f64, f64) {
+        let (nx, ny) = self.count;
+        let per_block = weighted.len() / cells.len();
+        // All pairs, less those in one row, less those in one column, and each with itself once again.
+        let mut sums = vec![vec![0.0; per_block + 1]; 1 + nx + ny];
+        let mut own = (0.0, 0.0);
+        for block in 0..nx * ny {
+            let (x, y) = (block % nx, block / nx);
+            if left_out(x, y) {
+                continue;
+            }
+            let values = &weighted[block * per_block..][..per_block];
+            for sum in [0, 1 + x, 1 + nx + y] {
+                for (sum, value) in sums[sum].iter_mut().zip(values) {
+                    *sum += value;
+                }
+                sums[sum][per_block] += cells[block];
+            }
+            own.0 += values.iter().map(|value| value * value).sum::<f64>();
+            own.1 += cells[block] * cells[block];
+        }
+        for (k, sum) in sums.iter().enumerate() {
+            let sign = if k == 0 { 1.0 } else { -1.0 };
+            let (weight, values) = (sum[per_block], &sum[..per_block]);
+            own.0 += sign * values.iter().map(|value| value * value).sum::<f64>();
+            own.1 += sign * weight * weight;
+        }
+        (
+            own.0 / (lattice.classes() as f64 * weight_of_features()),
+            own.1,
+        )
+    }
+}
+
+/// The variance of all features together.
+fn weight_of_features() -> f64 {
+    weights()
+        .iter()
+        .map(|weight| f64::from(weight * weight))
+        .sum()
+}
+
+/// The standard error by chance of products of means, of blocks whose products of sizes sum to `weight`.
+fn chance(lattice: Lattice, weight: f64) -> f64 {
+    let classes = lattice.classes() as f64;
+    classes / libm::sqrt(weight * classes * INDEPENDENT)
 }
 
 #[cfg(test)]
@@ -262,7 +390,7 @@ mod tests {
 
     #[test]
     fn a_lattice_step_leads_to_the_same_class() {
-        for classes in 2..=12 {
+        for classes in 2..=20 {
             for lattice in Lattice::all(classes) {
                 for p in 0..20 {
                     for e in 0..20 {

@@ -19,8 +19,16 @@ use super::repeat::Lattice;
 const MOST_CERTAIN: f64 = 16.0;
 /// Weights of the three kinds of evidence, fitted to rendered cloth whose truth is known.
 const STREAK_WEIGHT: f64 = 6.0;
-const TEXTURE_WEIGHT: f64 = 0.25;
-const YARN_WEIGHT: f64 = 0.15;
+const TEXTURE_WEIGHT: f64 = 0.2;
+const YARN_WEIGHT: f64 = 0.35;
+/// At most so many ways to divide the classes are handed on, of those whose groups differ nearly as
+/// plainly as the best do.
+const LIKELY: usize = 6;
+const LIKELY_SCORE: f64 = 0.7;
+/// The most classes of which every weave is tried.
+const MOST_TRIED_ALL: usize = 14;
+/// Features of a class that have to do with the shape of yarns; after them come those of colour.
+const SHAPES: usize = 3;
 /// Sides of a square that the rest of a patch is kept in, to be compared along yarns.
 const REST: usize = 4;
 
@@ -52,40 +60,47 @@ struct Class {
 }
 
 impl Sides {
-    /// Finds the sides of all classes. With `known` weaves, each of which says whether the
-    /// warp is on top in each class of the lattice, only their place is looked for.
-    pub fn find(
+    /// The likeliest sides of all classes, the best first. With `known` weaves, each of which says
+    /// whether the warp is on top in each class of the lattice, only their place is looked for.
+    pub fn likely(
         crossings: &Crossings,
         classes: &Classes,
         known: Option<&[Vec<bool>]>,
-    ) -> Option<Self> {
+    ) -> Vec<Self> {
         let measured = measure(crossings, classes);
+        let judge = Judge::new(&measured, classes.lattice);
         let candidates = match known {
             Some(known) => known
                 .iter()
                 .flat_map(|known| placed(classes.lattice, known))
                 .collect(),
-            None => possible(classes.lattice),
+            None => possible(classes.lattice, &judge),
         };
-        let judge = Judge::new(&measured, classes.lattice);
-        let judged = candidates
-            .into_iter()
-            .map(|warp_up| (judge.groups(&warp_up), judge.evidence(&warp_up), warp_up));
         // Of two that are each other's reverse, the one for which there is evidence.
-        let signed = |groups: f64, evidence: f64| {
-            if evidence > 0.0 {
-                groups
+        let mut judged: Vec<(f64, f64, Vec<bool>)> = candidates
+            .into_iter()
+            .map(|warp_up| (judge.groups(&warp_up), judge.evidence(&warp_up), warp_up))
+            .filter(|(_, evidence, _)| known.is_some() || *evidence > 0.0)
+            .collect();
+        let score = |(groups, evidence, _): &(f64, f64, Vec<bool>)| {
+            if *evidence > 0.0 {
+                *groups
             } else {
                 groups - 100.0
             }
         };
-        let (_, evidence, warp_up) =
-            judged.max_by(|a, b| signed(a.0, a.1).total_cmp(&signed(b.0, b.1)))?;
-        Some(Sides {
-            sure: 1.0 / (1.0 + libm::exp(-2.0 * evidence)),
-            coloured: ((judge.colours_apart(&warp_up) - 1.5) / 2.0).clamp(0.0, 1.0),
-            warp_up,
-        })
+        judged.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        let best = judged.first().map_or(0.0, score);
+        judged
+            .into_iter()
+            .take(LIKELY)
+            .take_while(|candidate| score(candidate) > LIKELY_SCORE * best)
+            .map(|(_, evidence, warp_up)| Sides {
+                sure: 1.0 / (1.0 + libm::exp(-2.0 * evidence)),
+                coloured: ((judge.colours_apart(&warp_up) - 1.5) / 2.0).clamp(0.0, 1.0),
+                warp_up,
+            })
+            .collect()
     }
 }
 
@@ -104,37 +119,45 @@ fn placed(lattice: Lattice, known: &[bool]) -> Vec<Vec<bool>> {
 }
 
 /// Every weave on a lattice that holds together: each end and each pick lies on top somewhere and
-/// beneath somewhere.
-fn possible(lattice: Lattice) -> Vec<Vec<bool>> {
+/// beneath somewhere. Of too many, those in which all features together set the groups apart.
+fn possible(lattice: Lattice, judge: &Judge) -> Vec<Vec<bool>> {
+    let classes = lattice.classes();
     let (ends, picks) = lattice.repeat();
     let bits = |crossings: &mut dyn Iterator<Item = (usize, usize)>| {
-        crossings.fold(0_u32, |bits, (e, p)| bits | 1 << lattice.class(e, p))
+        crossings.fold(0_u64, |bits, (e, p)| bits | 1 << lattice.class(e, p))
     };
-    let mut lines: Vec<u32> = (0..picks)
+    let mut lines: Vec<u64> = (0..picks)
         .map(|p| bits(&mut (0..ends).map(|e| (e, p))))
         .chain((0..ends).map(|e| bits(&mut (0..picks).map(|p| (e, p)))))
         .collect();
     lines.sort_unstable();
     lines.dedup();
-    let holds = |weave: &u32| {
+    let holds = |weave: &u64| {
         lines
             .iter()
             .all(|line| weave & line != 0 && weave & line != *line)
     };
-    (1..1_u32 << lattice.classes())
+    let weaves: Vec<u64> = if classes <= MOST_TRIED_ALL {
+        (1..1_u64 << classes).collect()
+    } else {
+        let order = judge.order();
+        let begun = order.iter().scan(0_u64, |weave, class| {
+            *weave |= 1 << class;
+            Some(*weave)
+        });
+        begun.take(classes - 1).collect()
+    };
+    weaves
+        .into_iter()
         .filter(holds)
-        .map(|weave| {
-            (0..lattice.classes())
-                .map(|class| weave >> class & 1 == 1)
-                .collect()
-        })
+        .map(|weave| (0..classes).map(|class| weave >> class & 1 == 1).collect())
         .collect()
 }
 
 struct Judge<'a> {
     classes: &'a [Class],
     lattice: Lattice,
-    /// Streak, texture, lightness and tint of every class, standardised, each with its weight.
+    /// Streak, texture, likeness along yarns, lightness and tint of every class, standardised, each with its weight.
     features: Vec<(f64, Vec<f64>)>,
 }
 
@@ -164,10 +187,37 @@ impl<'a> Judge<'a> {
             features: vec![
                 (1.0, feature(&|c| c.streak)),
                 (1.0, feature(&|c| c.texture)),
+                (1.0, feature(&|c| c.yarn)),
                 (strength(0), feature(&|c| c.colour[0])),
                 (strength(1), feature(&|c| c.colour[1])),
             ],
         }
+    }
+
+    /// The classes from those most like a warp on top to those most like a weft.
+    fn order(&self) -> Vec<usize> {
+        let count = self.classes.len();
+        let shape: Vec<f64> = (0..count)
+            .map(|i| {
+                self.features[..SHAPES]
+                    .iter()
+                    .map(|(_, values)| values[i])
+                    .sum()
+            })
+            .collect();
+        let colour = self.features[SHAPES..].iter().map(|(weight, values)| {
+            let along: f64 = values.iter().zip(&shape).map(|(a, b)| a * b).sum();
+            (weight * along.signum(), values)
+        });
+        let mut like = shape.clone();
+        for (weight, values) in colour {
+            for (like, value) in like.iter_mut().zip(values) {
+                *like += weight * value;
+            }
+        }
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|a, b| like[*b].total_cmp(&like[*a]));
+        order
     }
 
     /// How plainly the two groups differ: the share of each feature's variance between them.

@@ -48,7 +48,8 @@ impl Yarns {
                 };
                 light.get(x, y) * turned
             })
-            .blurred((AVERAGED * pitch) as f32)
+            // Mirrored yarns would run another way.
+            .blurred_alone((AVERAGED * pitch) as f32)
         };
         let (re, im) = (part(false), part(true));
         let step = (wave.pitch().min(pitch) as usize).max(1);
@@ -62,6 +63,14 @@ impl Yarns {
             (phase / TAU + 0.5) as f32
         });
         Yarns { wave, bend }
+    }
+
+    /// The same yarns, counted from where they lie `by` yarns further on.
+    pub fn shifted(mut self, by: f32) -> Self {
+        for bend in &mut self.bend.values {
+            *bend -= by;
+        }
+        self
     }
 
     /// The number of the yarn at a place: its whole part counts yarns, a half is the middle of one.
