@@ -81,6 +81,14 @@ Examples:
   dyelapse segment denim.jpg --weave twill3/1    the weave is known
   dyelapse segment fine.png --pitch 3.5,5.3      pixels from yarn to yarn, if they are not found")]
     Segment(Segment),
+    /// Measure the colours of dyed cloth on a photograph
+    ///
+    /// Prints the lightest, the middle and the darkest colour as a scenario's look has them.
+    #[command(after_help = "\
+Examples:
+  dyelapse palette indigo.jpg
+  dyelapse palette indigo.jpg --region 100,50,400,300 --swatch colours.png")]
+    Palette(Palette),
     /// Print the completions of a shell
     ///
     /// For bash: dyelapse completions bash > ~/.local/share/bash-completion/completions/dyelapse
@@ -163,6 +171,23 @@ pub struct Sheet {
     /// Say nothing but errors
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// `dyelapse palette`.
+#[derive(Debug, clap::Args)]
+pub struct Palette {
+    /// A photograph of dyed cloth, PNG or JPEG
+    #[arg(value_name = "PHOTO")]
+    pub photo: PathBuf,
+    /// The part that counts: left, top, width and height in pixels [default: all of it]
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub region: Option<String>,
+    /// Also draw the colours from undyed to fully dyed
+    #[arg(long, value_name = "FILE.png")]
+    pub swatch: Option<PathBuf>,
+    /// Replace the file if it is there
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// `dyelapse segment`.

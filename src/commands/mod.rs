@@ -2,6 +2,7 @@
 
 mod check;
 mod list;
+mod palette;
 mod progress;
 mod record;
 mod segment;
@@ -32,6 +33,7 @@ pub fn run(cli: Cli) -> ExitCode {
         Command::List => list::run(),
         Command::Wif(arguments) => wif::run(&arguments),
         Command::Segment(arguments) => segment::run(&arguments),
+        Command::Palette(arguments) => palette::run(&arguments),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "dyelapse", &mut script);

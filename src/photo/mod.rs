@@ -5,6 +5,7 @@ pub mod draw;
 mod error;
 pub(crate) mod file;
 mod mask;
+pub mod palette;
 mod photograph;
 mod plane;
 pub mod segment;
