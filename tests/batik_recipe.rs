@@ -88,6 +88,23 @@ fn looking_often_changes_no_batik() {
 }
 
 #[test]
+fn what_is_done_at_every_moment_is_told_in_order() {
+    let experiment = experiment(&recipe("", ""));
+    let batik = experiment.scenario.batik.as_ref().unwrap();
+    let told = [0, 1, 6, 7, 8, 14, 15].map(|step| batik.told(step, 0.0005));
+    let expected = [
+        "1. waxed",
+        "2. dyed, 0 of 6 scans",
+        "2. dyed, 5 of 6 scans",
+        "3. waxed",
+        "4. dyed, 0 of 6 scans",
+        "5. boiled",
+        "5. boiled",
+    ];
+    assert_eq!(told, expected);
+}
+
+#[test]
 fn wax_is_seen_until_it_is_boiled_off() {
     let at = |batik: &str, step| {
         let app = dyed(experiment(&recipe(batik, "")), step);

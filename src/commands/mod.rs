@@ -16,6 +16,7 @@ use std::process::ExitCode;
 use clap::CommandFactory;
 
 use crate::cli::{Cli, Command};
+use dyelapse::photo::PhotoError;
 
 /// Something the one who asked can mend: a scenario, an argument, a folder.
 const BAD_INPUT: u8 = 2;
@@ -50,6 +51,21 @@ fn print(text: &[u8]) -> ExitCode {
             ExitCode::from(FAILED)
         }
         _ => ExitCode::SUCCESS,
+    }
+}
+
+/// Prints what was asked of a photograph, or complains.
+fn answer(answer: Result<String, PhotoError>) -> ExitCode {
+    match answer {
+        Ok(text) => print(text.as_bytes()),
+        Err(why) => {
+            complain(&why);
+            ExitCode::from(if why.is_bad_input() {
+                BAD_INPUT
+            } else {
+                FAILED
+            })
+        }
     }
 }
 

@@ -3,23 +3,13 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use super::{BAD_INPUT, FAILED, complain, print};
+use super::answer;
 use crate::cli::Palette;
 use dyelapse::photo::palette::{Region, measure};
 use dyelapse::photo::{Photo, PhotoError, draw};
 
 pub fn run(arguments: &Palette) -> ExitCode {
-    match done(arguments) {
-        Ok(report) => print(report.as_bytes()),
-        Err(why) => {
-            complain(&why);
-            ExitCode::from(if why.is_bad_input() {
-                BAD_INPUT
-            } else {
-                FAILED
-            })
-        }
-    }
+    answer(done(arguments))
 }
 
 fn done(arguments: &Palette) -> Result<String, PhotoError> {

@@ -4,23 +4,13 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use super::{BAD_INPUT, FAILED, complain, print};
+use super::answer;
 use crate::cli::Segment;
 use dyelapse::photo::segment::{Hints, Segmentation, segment};
 use dyelapse::photo::{Photo, PhotoError, draw};
 
 pub fn run(arguments: &Segment) -> ExitCode {
-    match done(arguments) {
-        Ok(report) => print(report.as_bytes()),
-        Err(why) => {
-            complain(&why);
-            ExitCode::from(if why.is_bad_input() {
-                BAD_INPUT
-            } else {
-                FAILED
-            })
-        }
-    }
+    answer(done(arguments))
 }
 
 fn done(arguments: &Segment) -> Result<String, PhotoError> {

@@ -166,7 +166,12 @@ fn keep(
     // 3 · 0.1 h is 0.3 h and not 0.30000000000000004 h.
     let hours = rounded(clock.hours(), 12);
     if stop.sheet {
-        recorder.sheet.add(&picture, moment(clock.step, hours));
+        let scenario = &dyed.experiment.scenario;
+        let label = match &scenario.batik {
+            Some(batik) => batik.told(clock.step, scenario.process.step_h),
+            None => moment(clock.step, hours),
+        };
+        recorder.sheet.add(&picture, label);
     }
     let Some(frame) = stop.frame else {
         return;

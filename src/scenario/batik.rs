@@ -175,6 +175,24 @@ impl BatikSpec {
         shown
     }
 
+    /// What has been done at a step of the process, in a few words.
+    pub fn told(&self, step: u64, step_h: f64) -> String {
+        let begins = self.begins(step_h);
+        let last = self.steps.len().saturating_sub(1);
+        let now = begins.partition_point(|begin| *begin <= step);
+        let now = now.saturating_sub(1).min(last);
+        let unit = if self.sweeps() { "scans" } else { "steps" };
+        match self.steps.get(now) {
+            Some(BatikStep::Wax { .. }) => format!("{}. waxed", now + 1),
+            Some(BatikStep::Dye { lasts, .. }) => {
+                let (done, all) = (step - begins[now], lasts.steps(step_h));
+                format!("{}. dyed, {done} of {all} {unit}", now + 1)
+            }
+            Some(BatikStep::Boil) => format!("{}. boiled", now + 1),
+            None => String::new(),
+        }
+    }
+
     /// Whether dye moves in sweeps.
     pub fn sweeps(&self) -> bool {
         matches!(self.solver, BatikSolver::PixelDiffusing { .. })
