@@ -13,7 +13,7 @@
 //! | [`supply`] | dye enters | [`Supplies`](supply::Supplies) |
 //! | [`diffusion`] | dye moves | [`FreeDye`](diffusion::FreeDye), [`Conductances`](diffusion::Conductances) |
 //! | [`adsorption`] | dye binds | [`BoundDye`](adsorption::BoundDye) |
-//! | [`batik`] | wax, its cracks and the bath: plain functions | — |
+//! | [`batik`] | wax and its cracks, and baths one after the other | [`Batik`](batik::stage::Batik) |
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
 //! | [`record`] | frames are kept | the output folder |

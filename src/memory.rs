@@ -3,7 +3,7 @@
 use sysinfo::System;
 use thiserror::Error;
 
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, TextureLook};
 
 /// Bytes of the program itself.
 const BYTES_AT_LEAST: u128 = 20_000_000;
@@ -13,6 +13,13 @@ const BYTES_AT_LEAST: u128 = 20_000_000;
 const BYTES_PER_CELL: u128 = 46;
 /// Bytes of bound dye, of the three fields that solvers step between, and of capacities.
 const BYTES_PER_BINDING_CELL: u128 = 24;
+/// Bytes of a batik for one cell: the sweeps, what cells exchange, the dye that is gathered from them,
+/// and half of the drawing, the permeation and the cracks of a wax.
+const BYTES_PER_BATIK_CELL: u128 = 64;
+/// Bytes for one cell of what is kept of each dye, and for each of its waxes two numbers a place.
+const BYTES_PER_BATIK_STEP: u128 = 4;
+/// Bytes for one pixel of a picture that is mixed of several dyes, or blurred, in float32.
+const BYTES_PER_MIXED_PIXEL: u128 = 4 + 3 * 12;
 /// Bytes for one pixel of the picture: its shade, and its colour six times over: now, while it is
 /// made smaller for the contact sheet, and in the four frames that are on their way to the disk.
 const BYTES_PER_PIXEL: u128 = 2 + 6 * 3;
@@ -94,11 +101,17 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
     let recorded = if fields { BYTES_PER_RECORDED_CELL } else { 0 };
     let bound = scenario.adsorption.is_some() || scenario.cloth.kasuri.is_there();
     let binding = if bound { BYTES_PER_BINDING_CELL } else { 0 };
+    let batik = scenario.batik.as_ref().map_or(0, |batik| {
+        BYTES_PER_BATIK_CELL + BYTES_PER_BATIK_STEP * batik.steps.len() as u128
+    });
+    let mixed =
+        scenario.batik.is_some() || matches!(scenario.look.texture, TextureLook::Ellipses(_));
+    let mixed = if mixed { BYTES_PER_MIXED_PIXEL } else { 0 };
     let places = scenario.record.sheet.len().max(8) as u128;
     BYTES_AT_LEAST
-        + cells * (BYTES_PER_CELL + held + recorded + binding)
+        + cells * (BYTES_PER_CELL + held + recorded + binding + batik)
         + cells / 2 * per_layer_cell
-        + pixels * BYTES_PER_PIXEL
+        + pixels * (BYTES_PER_PIXEL + mixed)
         + places * BYTES_PER_SHEET_PLACE.min(40 * pixels)
 }
 

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use bevy::prelude::*;
 
-use crate::batik::stage as batik;
+use crate::batik::stage::Batik;
 use crate::cloth::Cloth;
 use crate::diffusion::{Conductances, FreeDye};
 use crate::ledger::Ledger;
@@ -324,7 +324,12 @@ fn soak(
     supplies.soak(clock.step, clock.splits, &cloth, &mut dye, &mut ledger);
 }
 
-fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
+pub(crate) fn prepare(
+    mut commands: Commands,
+    cloth: Res<Cloth>,
+    experiment: Res<TheExperiment>,
+    batik: Option<Res<Batik>>,
+) {
     let scenario = &experiment.scenario;
     let canvas = Canvas::of(&experiment);
     let step_h = scenario.process.step_h;
@@ -360,12 +365,14 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
             }),
         }
     }
-    for (from, until, bath, p) in batik::baths(&experiment) {
+    for waxed in batik.iter().flat_map(|batik| batik.baths()) {
+        let open = Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0);
+        let p = waxed.wax.map_or(&open, |wax| &wax.permeation);
         supplies.baths.push(Bath {
-            from,
-            until,
-            concentration: bath.concentration as f32,
-            cells: reached(&p, bath.supply as f32, &cloth),
+            from: waxed.from,
+            until: waxed.until,
+            concentration: waxed.bath.concentration as f32,
+            cells: reached(p, waxed.bath.supply as f32, &cloth),
         });
     }
     supplies.end_holds();

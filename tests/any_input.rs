@@ -15,8 +15,10 @@ fn try_out(text: String) -> Result<(), String> {
         return Ok(());
     }
     let mut app = dyeing_app(experiment);
-    assert!(advance_to(app.world_mut(), 3, |_| true));
-    look(app.world_mut());
+    for step in [3, 7] {
+        assert!(advance_to(app.world_mut(), step, |_| true));
+        look(app.world_mut());
+    }
     let concentration = &app.world().resource::<FreeDye>().concentration;
     assert!(concentration.iter().all(|c| (0.0..=1.0).contains(c)));
     let ledger = app.world().resource::<Ledger>();
@@ -95,7 +97,75 @@ fn weave() -> impl Strategy<Value = String> {
         (5..9_u32, 2..4_u32)
             .prop_map(|(n, s)| format!("Satin(shafts: {n}, counter: {s}, face: Warp)")),
         prop::collection::vec("[X.]{3}", 1..4).prop_map(|rows| format!("Matrix({rows:?})")),
+        (0..6_usize, any::<bool>()).prop_map(|(i, own)| {
+            let names = dyelapse::draft::bundled_names();
+            let measures = if own { "Draft" } else { "Yarns" };
+            format!(
+                "Wif(file: \"{}\", measures: {measures})",
+                names[i % names.len()]
+            )
+        }),
     ]
+}
+
+fn kasuri() -> impl Strategy<Value = String> {
+    prop_oneof![
+        9 => Just(String::new()),
+        1 => (pattern(), length(), length()).prop_map(|(p, s, b)| {
+            format!("kasuri: (warp: Sections(pattern: {p}, shift: {s}, bleed: {b})),")
+        }),
+    ]
+}
+
+fn appearance() -> impl Strategy<Value = String> {
+    let texture = prop_oneof![
+        Just("Shaded".to_owned()),
+        (share(), share(), 1..9_u32).prop_map(|(h, n, units)| {
+            format!("Fractal((roughness: {h}, threshold: {n}, unit_yarns: {units}))")
+        }),
+        share().prop_map(|blur| format!("Ellipses((blur: {blur}, size: (0.5, {blur})))")),
+    ];
+    let side = prop_oneof![Just("Face"), Just("Back")];
+    (texture, side, 1..4_u32, share()).prop_map(|(texture, side, scale, share)| {
+        format!(
+            "look: (texture: {texture}, side: {side}, pixels_per_cell: {scale}, path: Oklch,
+               yarn: (unevenness: {share}, hairiness: {share}, lustre: {share}, turn: -3))"
+        )
+    })
+}
+
+/// A batik on a small cloth.
+fn batik() -> impl Strategy<Value = String> {
+    let cloth = (1..40_u32, 1..40_u32, weave(), length(), length());
+    let rest = (
+        pattern(),
+        share(),
+        share(),
+        0..3_u32,
+        any::<bool>(),
+        appearance(),
+    );
+    (cloth, rest).prop_map(
+        |((nx, ny, weave, width, gap), (wax, density, thick, lasts, sweeps, look))| {
+            let (solver, more) = match sweeps {
+                true => ("PixelDiffusing(reading: Printed)", ""),
+                false => ("Diffusion", "adsorption: (isotherm: Langmuir(kl: 20)),"),
+            };
+            let lasts = lasts + 1;
+            format!(
+                "(title: \"any\", seed: {nx},
+                  cloth: (size: (Cells({nx}), Cells({ny})), weave: {weave}, warp: (width: {width}, gap: {gap})),
+                  batik: (solver: {solver}, steps: [
+                    Wax(pattern: {wax}, crackle: (density: {density}, folds: {thick}), edge: (reach: {lasts}, drawing: {thick})),
+                    Dye(colour: (200, {thick}, 0.5), lasts: Steps({lasts}), rinse: {sweeps}),
+                    Wax(pattern: {wax}, crackle: (density: 0.1)),
+                    Dye(colour: (20, 0.8, 0.5), lasts: Steps(2)),
+                    Boil]),
+                  supply: [], {more} process: (duration: Steps({})), {look})",
+                lasts + 5
+            )
+        },
+    )
 }
 
 fn scenario() -> impl Strategy<Value = String> {
@@ -107,6 +177,7 @@ fn scenario() -> impl Strategy<Value = String> {
         length(),
         number(),
         number(),
+        kasuri(),
     );
     let rest = (
         pattern(),
@@ -115,9 +186,13 @@ fn scenario() -> impl Strategy<Value = String> {
         number(),
         number(),
         0..4_usize,
+        appearance(),
     );
     (cloth, rest).prop_map(
-        |((nx, ny, weave, width, gap, porosity, cell), (shape, resist, dose, step, phi0, iso))| {
+        |(
+            (nx, ny, weave, width, gap, porosity, cell, kasuri),
+            (shape, resist, dose, step, phi0, iso, look),
+        )| {
             let isotherm = [
                 "Partition(k: 2)",
                 "Freundlich(k: 0.5, b: 0.3)",
@@ -128,13 +203,13 @@ fn scenario() -> impl Strategy<Value = String> {
             let one_in = |i: usize, text: String| if (nx as usize + i).is_multiple_of(3) { text } else { String::new() };
             format!(
                 "(title: \"any\", seed: {nx},
-                  cloth: (size: (Cells({nx}), Cells({ny})), weave: {weave}, {}
+                  cloth: (size: (Cells({nx}), Cells({ny})), weave: {weave}, {kasuri} {}
                           warp: (width: {width}, gap: {gap}, {} vary_porosity: (0.01, 1))),
                   supply: [Hold(shape: {shape}, {} until: Steps(2)), Dose(shape: Everywhere, dose: 0.1, at: Steps(1))],
                   resist: {resist},
                   dye: ({}),
                   adsorption: (isotherm: {isotherm}),
-                  process: (duration: Steps(30), {}))",
+                  process: (duration: Steps(30), {}), {look})",
                 one_in(0, format!("cell_mm: {cell},")),
                 one_in(1, format!("porosity: {porosity},")),
                 one_in(2, format!("dose: {dose},")),
@@ -150,6 +225,11 @@ proptest! {
 
     #[test]
     fn scenarios_put_together_at_random_run_or_give_a_clean_error(text in scenario()) {
+        let _ = try_out(text);
+    }
+
+    #[test]
+    fn batiks_put_together_at_random_run_or_give_a_clean_error(text in batik()) {
         let _ = try_out(text);
     }
 
@@ -179,9 +259,10 @@ fn many_of_the_random_scenarios_do_run() {
     use proptest::strategy::ValueTree;
     use proptest::test_runner::TestRunner;
     let mut runner = TestRunner::deterministic();
-    let strategy = scenario();
-    let ran = (0..300)
-        .filter(|_| try_out(strategy.new_tree(&mut runner).unwrap().current()).is_ok())
-        .count();
-    assert!(ran > 30, "only {ran} of 300 ran: the generator says little");
+    for strategy in [scenario().boxed(), batik().boxed()] {
+        let ran = (0..300)
+            .filter(|_| try_out(strategy.new_tree(&mut runner).unwrap().current()).is_ok())
+            .count();
+        assert!(ran > 30, "only {ran} of 300 ran: the generator says little");
+    }
 }

@@ -29,6 +29,7 @@ pub mod mixing;
 mod noise;
 pub mod permeation;
 pub mod picture;
+pub mod recipe;
 pub mod stage;
 pub mod sweep;
 pub mod wax;

@@ -1,28 +1,32 @@
-//! The stage of batik: a recipe of wax, dye and boiling, as the clock goes on.
+//! The stage of batik: its recipe is worked through as the clock goes on.
 //!
 //! Every bath is a process of its own. When it ends all its dye is fixed in the cloth, or only what
-//! was bound where the cloth is rinsed; the next dye moves in clean water. Colours of several dyes are mixed
-//! subtractively ([`mixing`](super::mixing)). Wax is seen until it is boiled off.
+//! was bound where the cloth is rinsed; the next dye moves in clean water. Colours of several dyes are
+//! mixed subtractively ([`mixing`](super::mixing)). Wax is seen until it is boiled off.
 
+use std::sync::Arc;
+
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use super::crackle::Crackle;
 use super::mixing::{Dyestuff, Mixture};
-use super::permeation::permeation;
 use super::picture::Colours;
-use super::sweep::{BathSpec, Classes, Dye, Exchange, ExchangeSpec, PixelDiffusing};
+use super::recipe::{Action, Recipe, Wax, WaxedBath};
+use super::sweep::{Classes, Dye, Exchange, ExchangeSpec, PixelDiffusing};
 use super::wax::{WaxLayer, WaxLook};
 use crate::adsorption::BoundDye;
-use crate::chance::Chance;
 use crate::cloth::Cloth;
 use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
-use crate::pattern::{Canvas, Raster};
-use crate::scenario::{BatikShow, BatikSolver, BatikSpec, BatikStep, Experiment, Reading};
+use crate::pattern::Raster;
+use crate::scenario::{
+    BatikShow, BatikSolver, BatikSpec, BatikStep, MOST_BATHS, Reading, Scenario,
+};
 use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
 };
-use crate::texture::{Picture, Texture, darkest_at, to_rgb};
+use crate::supply::SupplySystems;
+use crate::texture::{DrawDye, Picture, Rgb, Texture, darkest_at, to_rgb};
 
 /// Batik, where the scenario has a recipe for it.
 pub struct BatikPlugin;
@@ -30,75 +34,53 @@ pub struct BatikPlugin;
 impl Plugin for BatikPlugin {
     fn build(&self, app: &mut App) {
         let is_batik = resource_exists::<Batik>;
-        app.add_systems(
-            Prepare,
-            prepare
-                .in_set(PrepareSet::Stages)
-                .run_if(|experiment: Res<TheExperiment>| experiment.scenario.batik.is_some()),
-        )
-        .add_systems(
-            DyeStep,
-            (
-                turn.in_set(DyeSet::Supply)
-                    .before(crate::supply::SupplySystems)
-                    .run_if(is_batik),
-                scan.in_set(DyeSet::Diffusion).run_if(is_batik),
-            ),
-        )
-        .add_systems(
-            DyeFrame,
-            (
-                (turn, gather)
-                    .chain()
-                    .in_set(FrameSet::Supply)
-                    .before(crate::supply::SupplySystems)
-                    .run_if(is_batik),
-                measure
-                    .in_set(FrameSet::Measure)
-                    .after(crate::ledger::balance)
-                    .run_if(is_batik),
-                draw.in_set(FrameSet::Draw)
-                    .after(crate::texture::draw)
-                    .run_if(is_batik),
-            ),
-        );
+        app.configure_sets(DyeFrame, DrawDye.run_if(not(is_batik)))
+            .add_systems(
+                Prepare,
+                prepare
+                    .in_set(PrepareSet::Stages)
+                    .before(crate::supply::prepare),
+            )
+            .add_systems(
+                DyeStep,
+                (
+                    turn.in_set(DyeSet::Supply)
+                        .before(SupplySystems)
+                        .run_if(is_batik),
+                    scan.in_set(DyeSet::Diffusion).run_if(is_batik),
+                ),
+            )
+            .add_systems(
+                DyeFrame,
+                (
+                    (turn, gather)
+                        .chain()
+                        .in_set(FrameSet::Supply)
+                        .before(SupplySystems)
+                        .run_if(is_batik),
+                    measure
+                        .in_set(FrameSet::Measure)
+                        .after(crate::ledger::balance)
+                        .run_if(is_batik),
+                    draw.in_set(FrameSet::Draw).after(DrawDye).run_if(is_batik),
+                ),
+            );
     }
-}
-
-/// The wax on the cloth after one step of the recipe.
-#[derive(Debug, Clone)]
-pub struct Wax {
-    /// I: 0 waxed, 1 open, with its cracks.
-    pub drawing: Raster,
-    /// p: how well it lets dye through, 0 to 1.
-    pub permeation: Raster,
-}
-
-/// What one step of the recipe does.
-#[derive(Debug, Clone)]
-enum Action {
-    /// The wax is this from now on.
-    Wax(Wax),
-    /// A bath, and whether the cloth is rinsed after it.
-    Dye(BathSpec, bool),
-    /// There is no wax any more.
-    Boil,
 }
 
 /// A batik in the making.
 #[derive(Resource)]
 pub struct Batik {
-    actions: Vec<Action>,
-    /// Where each begins, and where the last one ends.
-    begins: Vec<u64>,
-    /// The actions that have begun.
+    recipe: Recipe,
+    /// The actions that have begun; one more once the last has ended.
     begun: usize,
-    wax: Option<Wax>,
+    wax: Option<Arc<Wax>>,
     /// The wax as it is seen.
     layer: Option<WaxLayer>,
-    /// What was bound of earlier dyes, `(layer, y, x)`.
-    settled: Vec<Vec<f32>>,
+    /// What is fixed of earlier dyes, `(layer, y, x)`.
+    fixed: Vec<Vec<f32>>,
     mixture: Mixture,
+    /// What cells exchange in sweeps; none where the solvers of paper D move the dye.
     exchange: Option<Exchange>,
     /// The bath that the cloth hangs in.
     sweeps: Option<PixelDiffusing>,
@@ -109,131 +91,28 @@ pub struct Batik {
     seed: u64,
 }
 
-/// The wax after every step of a recipe, as the steps with wax lay it on; none without wax.
-fn waxes(spec: &BatikSpec, canvas: &Canvas, experiment: &Experiment) -> Vec<Option<Wax>> {
-    let mut now: Option<Wax> = None;
-    let mut all = Vec::with_capacity(spec.steps.len());
-    for (i, step) in spec.steps.iter().enumerate() {
-        match step {
-            BatikStep::Wax {
-                drawing,
-                waxed,
-                pattern,
-                crackle,
-                edge,
-                ..
-            } => {
-                let (nx, ny) = (canvas.nx, canvas.ny);
-                let open = match (drawing, pattern) {
-                    (Some(file), _) => match experiment.images.drawing(file) {
-                        Some(drawing) => drawing.wax(nx, ny, *waxed),
-                        None => Raster::uniform(nx, ny, 1.0),
-                    },
-                    (None, Some(pattern)) => {
-                        let mut open = canvas.draw(pattern);
-                        open.values.iter_mut().for_each(|v| *v = 1.0 - *v);
-                        open
-                    }
-                    (None, None) => Raster::uniform(nx, ny, 1.0),
-                };
-                // Every layer of wax breaks in its own way.
-                let chance = Chance(canvas.seed.wrapping_add(i as u64));
-                let mut drawing = Crackle::grow(&open, crackle, None, chance).over(&open);
-                if let Some(before) = &now {
-                    let both = drawing.values.iter_mut().zip(&before.drawing.values);
-                    both.for_each(|(open, before)| *open = open.min(*before));
-                }
-                let permeation = permeation(&drawing, edge);
-                now = Some(Wax {
-                    drawing,
-                    permeation,
-                });
-            }
-            BatikStep::Boil => now = None,
-            BatikStep::Dye { .. } => {}
-        }
-        all.push(now.clone());
-    }
-    all
-}
-
-/// The baths of a recipe for the solvers of paper D: from when, until when, and what they are like, with p.
-pub(crate) fn baths(experiment: &Experiment) -> Vec<(u64, u64, BathSpec, Raster)> {
-    let scenario = &experiment.scenario;
-    let Some(spec) = scenario.batik.as_ref().filter(|spec| !spec.sweeps()) else {
-        return Vec::new();
-    };
-    let canvas = Canvas::of(experiment);
-    let begins = spec.begins(scenario.process.step_h);
-    let all = spec.steps.iter().zip(waxes(spec, &canvas, experiment));
-    let each = all
-        .zip(begins.windows(2))
-        .filter_map(|((step, wax), span)| {
-            let BatikStep::Dye { bath, .. } = step else {
-                return None;
-            };
-            let open = || Raster::uniform(canvas.nx, canvas.ny, 1.0);
-            let p = wax.map_or_else(open, |wax| wax.permeation);
-            Some((span[0], span[1], *bath, p))
-        });
-    each.collect()
+/// The cloth and its dye.
+#[derive(SystemParam)]
+struct Vat<'w> {
+    cloth: Res<'w, Cloth>,
+    free: ResMut<'w, FreeDye>,
+    bound: ResMut<'w, BoundDye>,
+    ledger: ResMut<'w, Ledger>,
 }
 
 fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperiment>) {
     let scenario = &experiment.scenario;
-    let Some(spec) = &scenario.batik else {
+    let (Some(spec), Some(recipe)) = (&scenario.batik, Recipe::of(&experiment)) else {
         return;
     };
-    let canvas = Canvas::of(&experiment);
-    let waxes = waxes(spec, &canvas, &experiment);
-    let undyed = to_rgb(spec.cloth);
-    let mut dyes = Vec::new();
-    let mut actions = Vec::new();
-    for (step, wax) in spec.steps.iter().zip(waxes) {
-        actions.push(match (step, wax) {
-            (BatikStep::Wax { .. }, Some(wax)) => Action::Wax(wax),
-            (
-                BatikStep::Dye {
-                    colour,
-                    bath,
-                    rinse,
-                    ..
-                },
-                _,
-            ) => {
-                let full = match spec.sweeps() {
-                    true => (1.0 + bath.most_bound) as f32,
-                    false => darkest_at(scenario) as f32,
-                };
-                dyes.push(Dyestuff::of_colour(to_rgb(*colour), undyed, full));
-                Action::Dye(*bath, *rinse)
-            }
-            _ => Action::Boil,
-        });
-    }
-    let exchange = match spec.solver {
-        BatikSolver::PixelDiffusing { reading, step } => {
-            let exchange = ExchangeSpec {
-                in_water: 1.93 * step,
-                classes: match reading {
-                    Reading::Physical => Classes::PHYSICAL,
-                    Reading::Printed => Classes::PRINTED,
-                },
-                ..ExchangeSpec::default()
-            };
-            Some(Exchange::of(&cloth, &exchange, scenario.seed))
-        }
-        BatikSolver::Diffusion => None,
-    };
     commands.insert_resource(Batik {
-        actions,
-        begins: spec.begins(scenario.process.step_h),
+        recipe,
         begun: 0,
         wax: None,
         layer: None,
-        settled: Vec::new(),
-        mixture: Mixture::new(undyed, dyes),
-        exchange,
+        fixed: Vec::new(),
+        mixture: mixture(spec, scenario),
+        exchange: exchange(spec, scenario, &cloth),
         sweeps: None,
         booked: 0.0,
         show: spec.show,
@@ -242,20 +121,122 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
     });
 }
 
+/// The dyes of a recipe on its cloth.
+fn mixture(spec: &BatikSpec, scenario: &Scenario) -> Mixture {
+    let undyed = to_rgb(spec.cloth);
+    let dyestuff = |step: &BatikStep| match step {
+        BatikStep::Dye { colour, bath, .. } => {
+            let full = match spec.sweeps() {
+                true => 1.0 + bath.most_bound,
+                false => darkest_at(scenario),
+            };
+            Some(Dyestuff::of_colour(to_rgb(*colour), undyed, full as f32))
+        }
+        _ => None,
+    };
+    Mixture::new(undyed, spec.steps.iter().filter_map(dyestuff).collect())
+}
+
+fn exchange(spec: &BatikSpec, scenario: &Scenario, cloth: &Cloth) -> Option<Exchange> {
+    let BatikSolver::PixelDiffusing { reading, step } = spec.solver else {
+        return None;
+    };
+    let exchange = ExchangeSpec {
+        in_water: 1.93 * step,
+        classes: match reading {
+            Reading::Physical => Classes::PHYSICAL,
+            Reading::Printed => Classes::PRINTED,
+        },
+        ..ExchangeSpec::default()
+    };
+    Some(Exchange::of(cloth, &exchange, scenario.seed))
+}
+
 impl Batik {
     /// The wax on the cloth now.
     pub fn wax(&self) -> Option<&Wax> {
-        self.wax.as_ref()
+        self.wax.as_deref()
     }
 
     /// How often f had to be truncated in the bath that the cloth hangs in; it never is.
     pub fn truncated(&self) -> u64 {
-        self.sweeps
-            .as_ref()
-            .map_or(0, |sweeps| sweeps.account().truncated)
+        let sweeps = self.sweeps.as_ref();
+        sweeps.map_or(0, |sweeps| sweeps.account().truncated)
     }
 
-    /// Books what sweeps have supplied, and made or lost by changing cells in place, since the last time.
+    /// The baths that are supply to the solvers of paper D.
+    pub(crate) fn baths(&self) -> impl Iterator<Item = WaxedBath<'_>> {
+        let baths = self.exchange.is_none().then(|| self.recipe.baths());
+        baths.into_iter().flatten()
+    }
+
+    /// Whether something is to begin or to end at a step.
+    fn is_due(&self, step: u64) -> bool {
+        let begins = self.recipe.begins.get(self.begun);
+        begins.is_some_and(|begins| *begins <= step)
+    }
+
+    /// Begins the actions that are due, and ends those before them. Does nothing the second time at
+    /// one moment.
+    fn turn(&mut self, step: u64, vat: &mut Vat) {
+        while self.is_due(step) {
+            let before = self.begun.checked_sub(1);
+            if let Some(Action::Dye { rinse, .. }) = before.map(|i| &self.recipe.actions[i]) {
+                self.fix(*rinse, vat);
+            }
+            match self.recipe.actions.get(self.begun) {
+                None => {}
+                Some(Action::Wax(wax)) => {
+                    let seed = self.seed.wrapping_add(self.begun as u64);
+                    self.layer = Some(WaxLayer::new(&wax.drawing, WaxLook::default(), seed));
+                    self.wax = Some(wax.clone());
+                }
+                Some(Action::Boil) => {
+                    self.wax = None;
+                    self.layer = None;
+                }
+                Some(Action::Dye { bath, .. }) => {
+                    let (nx, ny) = (vat.cloth.grid.nx, vat.cloth.grid.ny);
+                    let open = Raster::uniform(nx, ny, 1.0);
+                    let p = self.wax.as_ref().map_or(&open, |wax| &wax.permeation);
+                    let none = Dye::none(nx, ny);
+                    let begin = |exchange| PixelDiffusing::new(exchange, p, bath, &none);
+                    self.sweeps = self.exchange.as_ref().map(begin);
+                    self.booked = 0.0;
+                }
+            }
+            self.begun += 1;
+        }
+    }
+
+    /// Ends a bath: its dye is fixed in the cloth, all of it or, where it is rinsed, what was bound.
+    fn fix(&mut self, rinse: bool, vat: &mut Vat) {
+        self.book(&mut vat.ledger);
+        let (loose, mut fixed) = match self.sweeps.take() {
+            Some(sweeps) => {
+                let Dye { free, bound } = sweeps.dye();
+                (free, bound)
+            }
+            None => {
+                let mut fixed = vat.bound.amount.clone();
+                fixed.resize(vat.cloth.grid.len(), 0.0);
+                (vat.free.amounts(&vat.cloth), fixed)
+            }
+        };
+        if rinse {
+            vat.ledger.book(-sum(&loose));
+        } else {
+            let both = fixed.iter_mut().zip(&loose);
+            both.for_each(|(fixed, loose)| *fixed += loose);
+        }
+        vat.free.wash();
+        vat.bound.amount.fill(0.0);
+        vat.bound.carry.fill(0.0);
+        self.fixed.push(fixed);
+    }
+
+    /// Books what sweeps have supplied, and made or lost by changing cells in place, since the last
+    /// time.
     fn book(&mut self, ledger: &mut Ledger) {
         if let Some(sweeps) = &self.sweeps {
             let account = sweeps.account();
@@ -264,115 +245,15 @@ impl Batik {
             self.booked = all;
         }
     }
-
-    /// Begins the actions that are due, and ends those before them. Does nothing the second time at one
-    /// moment.
-    fn turn(
-        &mut self,
-        step: u64,
-        cloth: &Cloth,
-        free: &mut Mut<FreeDye>,
-        bound: &mut Mut<BoundDye>,
-        ledger: &mut Ledger,
-    ) {
-        while self.begins[self.begun] <= step {
-            let before = self.begun.checked_sub(1).and_then(|i| self.actions.get(i));
-            if let Some(Action::Dye(_, rinse)) = before {
-                self.fix(*rinse, cloth, free, bound, ledger);
-            }
-            match self.actions.get(self.begun) {
-                None => {}
-                Some(Action::Wax(wax)) => {
-                    self.wax = Some(wax.clone());
-                    let look = WaxLook::default();
-                    let seed = self.seed.wrapping_add(self.begun as u64);
-                    self.layer = Some(WaxLayer::new(&wax.drawing, look, seed));
-                }
-                Some(Action::Boil) => {
-                    self.wax = None;
-                    self.layer = None;
-                }
-                Some(Action::Dye(bath, _)) => {
-                    let (nx, ny) = (cloth.grid.nx, cloth.grid.ny);
-                    let open = || Raster::uniform(nx, ny, 1.0);
-                    let p = self
-                        .wax
-                        .as_ref()
-                        .map_or_else(open, |wax| wax.permeation.clone());
-                    let none = Dye::none(nx, ny);
-                    self.sweeps = self
-                        .exchange
-                        .as_ref()
-                        .map(|exchange| PixelDiffusing::new(exchange, &p, bath, &none));
-                    self.booked = 0.0;
-                }
-            }
-            self.begun += 1;
-            if self.begun == self.begins.len() {
-                // Nothing more is due, ever.
-                self.begins.push(u64::MAX);
-            }
-        }
-    }
-
-    /// Ends a bath: its dye is fixed in the cloth, all of it or, where it is rinsed, what was bound.
-    fn fix(
-        &mut self,
-        rinse: bool,
-        cloth: &Cloth,
-        free: &mut Mut<FreeDye>,
-        bound: &mut Mut<BoundDye>,
-        ledger: &mut Ledger,
-    ) {
-        self.book(ledger);
-        let (loose, mut fixed, washed) = match self.sweeps.take() {
-            Some(sweeps) => {
-                let Dye { free, bound } = sweeps.dye();
-                let washed = free.iter().map(|f| f64::from(*f)).sum();
-                (free, bound, washed)
-            }
-            None => {
-                let capacity = |i: usize| {
-                    let (layer, y, x) = cloth.grid.place(i);
-                    cloth.capacity_free(layer, y, x)
-                };
-                let amounts = free.concentration.iter().enumerate();
-                let loose = amounts.map(|(i, c)| c * capacity(i)).collect();
-                let mut fixed = bound.amount.clone();
-                fixed.resize(cloth.grid.len(), 0.0);
-                (loose, fixed, free.total(cloth))
-            }
-        };
-        if rinse {
-            ledger.book(-washed);
-        } else {
-            let both = fixed.iter_mut().zip(&loose);
-            both.for_each(|(fixed, loose)| *fixed += loose);
-        }
-        free.wash();
-        bound.amount.fill(0.0);
-        bound.carry.fill(0.0);
-        self.settled.push(fixed);
-    }
-
-    /// What is bound of earlier dyes, in all.
-    fn settled(&self) -> f64 {
-        let sum = |field: &Vec<f32>| field.iter().map(|v| f64::from(*v)).sum::<f64>();
-        self.settled.iter().map(sum).sum()
-    }
 }
 
-fn turn(
-    mut batik: ResMut<Batik>,
-    clock: Res<ProcessClock>,
-    cloth: Res<Cloth>,
-    mut free: ResMut<FreeDye>,
-    mut bound: ResMut<BoundDye>,
-    mut ledger: ResMut<Ledger>,
-) {
-    if batik.begins[batik.begun] <= clock.step {
-        let (mut free, mut bound) = (free.reborrow(), bound.reborrow());
-        batik.turn(clock.step, &cloth, &mut free, &mut bound, &mut ledger);
+fn sum(field: &[f32]) -> f64 {
+    field.iter().map(|v| f64::from(*v)).sum()
+}
+
+fn turn(mut batik: ResMut<Batik>, clock: Res<ProcessClock>, mut vat: Vat) {
+    if batik.is_due(clock.step) {
+        batik.turn(clock.step, &mut vat);
     }
 }
 
@@ -383,36 +264,27 @@ fn scan(mut batik: ResMut<Batik>) {
     }
 }
 
-/// Shows the dye of the sweeps.
-fn gather(
-    mut batik: ResMut<Batik>,
-    mut free: ResMut<FreeDye>,
-    mut bound: ResMut<BoundDye>,
-    mut ledger: ResMut<Ledger>,
-) {
-    batik.book(&mut ledger);
+/// Brings the dye of the sweeps to where everyone looks for it.
+fn gather(mut batik: ResMut<Batik>, mut vat: Vat) {
+    batik.book(&mut vat.ledger);
     if let Some(sweeps) = &batik.sweeps {
         let dye = sweeps.dye();
-        free.concentration = dye.free;
-        bound.amount = dye.bound;
+        vat.free.concentration = dye.free;
+        vat.bound.amount = dye.bound;
     }
 }
 
-/// Takes stock where amounts are not those of paper D's cells, and of earlier dyes.
-fn measure(
-    batik: Res<Batik>,
-    free: Res<FreeDye>,
-    bound: Res<BoundDye>,
-    mut ledger: ResMut<Ledger>,
-) {
+/// Takes stock of earlier dyes, and of all dye where amounts are not those of paper D's cells.
+fn measure(batik: Res<Batik>, mut vat: Vat) {
     if batik.exchange.is_some() {
-        ledger.free = free.concentration.iter().map(|f| f64::from(*f)).sum();
-        ledger.bound = bound.total();
+        vat.ledger.free = sum(&vat.free.concentration);
+        vat.ledger.bound = vat.bound.total();
     }
-    ledger.bound += batik.settled();
+    let fixed: f64 = batik.fixed.iter().map(|fixed| sum(fixed)).sum();
+    vat.ledger.bound += fixed;
 }
 
-/// Draws all dyes on the cloth, and the wax.
+/// Draws all dyes on the cloth, and the wax; or a map of the wax alone.
 fn draw(
     batik: Res<Batik>,
     texture: Res<Texture>,
@@ -421,39 +293,30 @@ fn draw(
     bound: Res<BoundDye>,
     mut picture: ResMut<Picture>,
 ) {
-    let map = |wax: &Wax| match batik.show {
-        BatikShow::Cloth => None,
-        BatikShow::Drawing => Some(wax.drawing.clone()),
-        BatikShow::Permeation => Some(wax.permeation.clone()),
+    let map = match (batik.show, &batik.wax) {
+        (BatikShow::Cloth, _) => None,
+        (_, None) => Some(&Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0)),
+        (BatikShow::Drawing, Some(wax)) => Some(&wax.drawing),
+        (BatikShow::Permeation, Some(wax)) => Some(&wax.permeation),
     };
-    if let Some(map) = batik.wax.as_ref().and_then(map) {
-        // The same grey in both layers, without any cloth.
-        let layer = map.values.len();
-        let scale = texture.scale;
-        let width = picture.width.max(1);
-        let grey = |i: usize| {
-            let (y, x) = (i / width / scale, i % width / scale);
-            (255.0 * map.values[(y * map.nx + x) % layer] + 0.5) as u8
-        };
-        let pixels = picture.rgb.as_chunks_mut::<3>().0;
-        pixels
-            .iter_mut()
-            .enumerate()
-            .for_each(|(i, p)| *p = [grey(i); 3]);
+    if let Some(map) = map {
+        texture.draw_map(map, &mut picture);
         return;
     }
     let now = match batik.exchange {
         Some(_) => {
-            let mut all = free.concentration.clone();
-            let both = all.iter_mut().zip(&bound.amount);
-            both.for_each(|(all, bound)| *all += bound);
-            all
+            // Before the first bath nothing is bound, and there is no field of it.
+            let all = free.concentration.iter().enumerate();
+            all.map(|(i, f)| f + bound.at(i)).collect()
         }
         None => texture.amounts(&cloth, &free, &bound),
     };
-    let colour = |i: usize| {
-        let mut amounts: Vec<f32> = batik.settled.iter().map(|settled| settled[i]).collect();
-        amounts.push(now[i]);
+    let colour = |i: usize| -> Rgb {
+        let mut amounts = [0.0; MOST_BATHS + 1];
+        for (amount, fixed) in amounts.iter_mut().zip(&batik.fixed) {
+            *amount = fixed[i];
+        }
+        amounts[batik.fixed.len()] = now[i];
         batik.mixture.colour(&amounts)
     };
     texture.draw_colours(&cloth, colour, &mut picture);

@@ -58,15 +58,14 @@ fn print(text: &[u8]) -> ExitCode {
 fn answer(answer: Result<String, PhotoError>) -> ExitCode {
     match answer {
         Ok(text) => print(text.as_bytes()),
-        Err(why) => {
-            complain(&why);
-            ExitCode::from(if why.is_bad_input() {
-                BAD_INPUT
-            } else {
-                FAILED
-            })
-        }
+        Err(why) => failed(&why, why.is_bad_input()),
     }
+}
+
+/// Complains, and tells by the exit code whether the one who asked can mend it.
+fn failed(why: &impl Display, is_bad_input: bool) -> ExitCode {
+    complain(why);
+    ExitCode::from(if is_bad_input { BAD_INPUT } else { FAILED })
 }
 
 /// Says something on standard error. Nobody is left to tell if that fails.

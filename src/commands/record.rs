@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::progress::Progress;
-use super::{BAD_INPUT, FAILED, INTERRUPTED, complain, say};
+use super::{BAD_INPUT, INTERRUPTED, complain, failed, say};
 use crate::cli::Record;
 use dyelapse::record::{Options, default_folder, record};
 use dyelapse::scenario::Experiment;
@@ -72,13 +72,6 @@ pub fn run(arguments: &Record) -> ExitCode {
                 ExitCode::from(INTERRUPTED)
             }
         }
-        Err(why) => {
-            complain(&why);
-            ExitCode::from(if why.is_bad_input() {
-                BAD_INPUT
-            } else {
-                FAILED
-            })
-        }
+        Err(why) => failed(&why, why.is_bad_input()),
     }
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::progress::Progress;
-use super::{BAD_INPUT, FAILED, INTERRUPTED, complain, say};
+use super::{BAD_INPUT, INTERRUPTED, complain, failed, say};
 use crate::cli::Sheet;
 use dyelapse::record::{PictureFile, RecordError, draw_figure};
 use dyelapse::scenario::{Figure, MOST_PANELS};
@@ -26,14 +26,7 @@ pub fn run(arguments: &Sheet) -> ExitCode {
     };
     match draw(arguments, &figure, &out) {
         Ok(code) => code,
-        Err(why) => {
-            complain(&why);
-            ExitCode::from(if why.is_bad_input() {
-                BAD_INPUT
-            } else {
-                FAILED
-            })
-        }
+        Err(why) => failed(&why, why.is_bad_input()),
     }
 }
 

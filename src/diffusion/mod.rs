@@ -78,6 +78,15 @@ impl FreeDye {
         }
     }
 
+    /// φ = c·V_u of every cell, `(layer, y, x)`.
+    pub fn amounts(&self, cloth: &Cloth) -> Vec<f32> {
+        let amount = |(i, c): (usize, &f32)| {
+            let (layer, y, x) = cloth.grid.place(i);
+            c * cloth.capacity_free(layer, y, x)
+        };
+        self.concentration.iter().enumerate().map(amount).collect()
+    }
+
     /// Washes all free dye out of the cloth.
     pub fn wash(&mut self) {
         self.concentration.fill(0.0);

@@ -146,10 +146,15 @@ impl State {
     /// Takes the fields as they are at this moment.
     pub fn take(dyed: &mut Dyed, step: u64, hours: f64) -> Self {
         let cloth = &dyed.cloth;
+        // Paper B's f knows no capacity.
+        let plain = dyed.experiment.scenario.sweeps();
         let amounts = |concentration: &[f32]| -> Vec<f32> {
             let both = concentration.iter().zip(cells(cloth.grid, 0, 0));
-            both.map(|(c, (l, y, x))| c * cloth.capacity_free(l, y, x))
-                .collect()
+            let amount = |(c, (l, y, x)): (&f32, _)| match plain {
+                true => *c,
+                false => c * cloth.capacity_free(l, y, x),
+            };
+            both.map(amount).collect()
         };
         let held = dyed.supplies.held(step, cloth.grid.len());
         State {

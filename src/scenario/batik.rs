@@ -10,6 +10,9 @@ use crate::batik::permeation::PermeationSpec;
 use crate::batik::sweep::BathSpec;
 use crate::pattern::Pattern;
 
+/// The most baths of one recipe.
+pub const MOST_BATHS: usize = 16;
+
 /// A batik: what is done to the cloth, in order (paper B; model section 7).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Batik", deny_unknown_fields)]
@@ -238,7 +241,7 @@ impl BatikSpec {
         step_h: f64,
         duration: u64,
     ) -> Result<(), Problem> {
-        check_hsv(self.cloth, &at.field("cloth"))?;
+        at.field("cloth").hsv(self.cloth)?;
         if let BatikSolver::PixelDiffusing { step, .. } = self.solver {
             at.field("solver").field("step").within(step, 0.0..=1e4)?;
         }
@@ -246,6 +249,13 @@ impl BatikSpec {
             return Err(at.field("steps").problem(format!(
                 "1 to 100 steps are allowed, but this has {}",
                 self.steps.len()
+            )));
+        }
+        let is_bath = |step: &&BatikStep| matches!(step, BatikStep::Dye { .. });
+        let baths = self.steps.iter().filter(is_bath).count();
+        if baths > MOST_BATHS {
+            return Err(at.field("steps").problem(format!(
+                "at most {MOST_BATHS} baths are allowed, but this has {baths}"
             )));
         }
         for (i, step) in self.steps.iter().enumerate() {
@@ -314,7 +324,7 @@ impl BatikStep {
                 ..
             } => {
                 let at = at.field("Dye");
-                check_hsv(*colour, &at.field("colour"))?;
+                at.field("colour").hsv(*colour)?;
                 lasts.check(&at.field("lasts"), step_h)?;
                 if lasts.steps(step_h) == 0 {
                     return Err(at
@@ -331,10 +341,4 @@ impl BatikStep {
             BatikStep::Boil => Ok(()),
         }
     }
-}
-
-fn check_hsv((hue, saturation, value): (f64, f64, f64), at: &Checker) -> Result<(), Problem> {
-    at.item(0).within(hue, 0.0..=360.0)?;
-    at.item(1).within(saturation, 0.0..=1.0)?;
-    at.item(2).within(value, 0.0..=1.0)
 }

@@ -71,6 +71,16 @@ impl Checker {
         Err(self.problem(format!("{least} to {most} is allowed, but this is {value}")))
     }
 
+    /// Demands a colour as (hue in degrees, saturation 0 to 1, value 0 to 1).
+    ///
+    /// # Errors
+    /// A [`Problem`] with the value and its range.
+    pub fn hsv(&self, (hue, saturation, value): (f64, f64, f64)) -> Result<(), Problem> {
+        self.item(0).within(hue, 0.0..=360.0)?;
+        self.item(1).within(saturation, 0.0..=1.0)?;
+        self.item(2).within(value, 0.0..=1.0)
+    }
+
     /// Demands that a pair is a range (least, most) within `range`.
     ///
     /// # Errors

@@ -208,16 +208,10 @@ impl LookSpec {
             darkest,
         } = self.colours
         {
-            for (name, (hue, saturation, value)) in [
-                ("lightest", lightest),
-                ("middle", middle),
-                ("darkest", darkest),
-            ] {
-                let at = at.field("colours").field(name);
-                at.item(0).within(hue, 0.0..=360.0)?;
-                at.item(1).within(saturation, 0.0..=1.0)?;
-                at.item(2).within(value, 0.0..=1.0)?;
-            }
+            let at = at.field("colours");
+            at.field("lightest").hsv(lightest)?;
+            at.field("middle").hsv(middle)?;
+            at.field("darkest").hsv(darkest)?;
         }
         if let TextureLook::Fractal(look) = &self.texture {
             let at = at.field("texture").field("Fractal");

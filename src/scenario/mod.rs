@@ -20,7 +20,7 @@ pub mod units;
 
 use serde::{Deserialize, Serialize};
 
-pub use batik::{BatikShow, BatikSolver, BatikSpec, BatikStep, Reading};
+pub use batik::{BatikShow, BatikSolver, BatikSpec, BatikStep, MOST_BATHS, Reading};
 pub use beside::Beside;
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
 pub(crate) use error::nearest;
@@ -97,9 +97,37 @@ impl Scenario {
         if let Some(batik) = &self.batik {
             let steps = self.process.steps();
             batik.check(&at.field("batik"), cell_mm, step_h, steps)?;
+            self.check_beside_batik(batik, &at)?;
         }
         self.look.check(&at.field("look"))?;
         self.record.check(&at.field("record"), &self.process)
+    }
+
+    /// Refuses what would be ignored beside a recipe.
+    fn check_beside_batik(&self, batik: &BatikSpec, at: &Checker) -> Result<(), Problem> {
+        if self.cloth.kasuri.is_there() {
+            return Err(at
+                .field("cloth")
+                .field("kasuri")
+                .problem("a batik begins with undyed yarns; leave `kasuri` out".into()));
+        }
+        if !batik.sweeps() {
+            return Ok(());
+        }
+        let instead = "the baths of a recipe by `PixelDiffusing` are all its dye, and bind by \
+                       themselves; leave this out, or take `solver: Diffusion`";
+        if !self.supply.is_empty() {
+            return Err(at.field("supply").problem(instead.into()));
+        }
+        if self.adsorption.is_some() {
+            return Err(at.field("adsorption").problem(instead.into()));
+        }
+        if self.resist != Pattern::Nowhere {
+            return Err(at.field("resist").problem(
+                "sweeps know no resist but wax; leave this out, or take `solver: Diffusion`".into(),
+            ));
+        }
+        Ok(())
     }
 
     /// Refuses a step so long that it would have to be split without end: see

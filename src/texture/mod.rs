@@ -31,6 +31,7 @@ use crate::batik::crossings::Crossings;
 use crate::batik::ellipse::EllipseWeave;
 use crate::cloth::{Cloth, Layer, Yarns};
 use crate::diffusion::FreeDye;
+use crate::pattern::Raster;
 use crate::scenario::{Experiment, Images, LookSpec, Photo, Scenario, Show, Side, TextureLook};
 use crate::schedule::{DyeFrame, FrameSet, Prepare, PrepareSet, TheExperiment};
 
@@ -40,9 +41,14 @@ pub struct TexturePlugin;
 impl Plugin for TexturePlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(Prepare, prepare.in_set(PrepareSet::Stages))
-            .add_systems(DyeFrame, draw.in_set(FrameSet::Draw));
+            .add_systems(DyeFrame, draw.in_set(DrawDye).in_set(FrameSet::Draw));
     }
 }
+
+/// Drawing the cloth with the one dye that the process is about; a stage that draws the cloth in
+/// another way turns it off.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct DrawDye;
 
 /// Pixels along one side of a cell, where it is not the scenario's own.
 #[derive(Resource, Debug, Clone, Copy)]
@@ -240,6 +246,21 @@ impl Texture {
             });
     }
 
+    /// Draws a map of the cloth in grey, black 0 and white 1.
+    pub fn draw_map(&self, map: &Raster, picture: &mut Picture) {
+        picture.width = map.nx * self.scale;
+        picture.height = map.ny * self.scale;
+        let grey = |i: usize| {
+            let (y, x) = (
+                i / picture.width / self.scale,
+                i % picture.width / self.scale,
+            );
+            [(255.0 * map.at(y, x) + 0.5) as u8; 3]
+        };
+        let pixels = 0..picture.width * picture.height;
+        picture.rgb = pixels.flat_map(grey).collect();
+    }
+
     /// The amount of dye shown in every cell, `(layer, y, x)`.
     pub(crate) fn amounts(&self, cloth: &Cloth, free: &FreeDye, bound: &BoundDye) -> Vec<f32> {
         let (nx, ny) = (cloth.grid.nx, cloth.grid.ny);
@@ -398,7 +419,7 @@ fn prepare(
     commands.insert_resource(Picture::default());
 }
 
-pub(crate) fn draw(
+fn draw(
     texture: Res<Texture>,
     cloth: Res<Cloth>,
     free: Res<FreeDye>,
