@@ -56,7 +56,7 @@ Examples:
         #[arg(required = true, value_name = "NAME")]
         scenarios: Vec<String>,
     },
-    /// List the scenarios and figures that come with the program
+    /// List the scenarios, figures and drafts that come with the program
     List,
     /// Sum up a weaving draft (WIF), or write the weave of a scenario as one
     ///

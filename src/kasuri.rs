@@ -7,8 +7,10 @@
 //! What the yarns bring with them is bound dye at the beginning of the process: the cloth can be dyed
 //! again.
 
+use rayon::prelude::*;
+
 use crate::chance::{Chance, Purpose, Sequence};
-use crate::cloth::{Cloth, Layer};
+use crate::cloth::{Cloth, Layer, Span};
 use crate::pattern::{Canvas, Raster};
 use crate::scenario::KasuriSpec;
 
@@ -36,13 +38,16 @@ fn dye(cloth: &Cloth, layer: Layer, spec: &KasuriSpec, canvas: &Canvas, bound: &
     };
     let mut chance = Chance(canvas.seed).sequence(purpose);
     let [shift, bleed] = [spec.shift, spec.bleed].map(|length| length.cells(cloth.cell_mm));
-    for span in yarns.spans() {
-        let (moved, bled) = (
-            draw_shift(shift, &mut chance),
-            bleed * chance.between((0.6, 1.4)),
-        );
+    let mut draw = |span: &Span| {
+        let moved = draw_shift(shift, &mut chance);
+        (*span, moved, bleed * chance.between((0.6, 1.4)))
+    };
+    let drawn: Vec<(Span, f64, f64)> = yarns.spans().iter().map(&mut draw).collect();
+    let dyed = drawn.into_par_iter().map(|(span, moved, bled)| {
         let middle = (span.middle() as usize).min(yarns.cells() - 1);
-        let section = section(&plan, layer, middle, length, moved, bled);
+        (span, section(&plan, layer, middle, length, moved, bled))
+    });
+    for (span, section) in dyed.collect::<Vec<_>>() {
         for across in span.begin..(span.begin + span.width).min(yarns.cells()) {
             for (along, value) in section.iter().enumerate() {
                 let (y, x) = match layer {
@@ -87,7 +92,7 @@ fn section(
     };
     let whole = shift.round();
     let weights: Vec<f64> = (-reach..=reach)
-        .map(|i| weight(i as f64 - (shift - whole)))
+        .map(|i| weight(i as f64 + (shift - whole)))
         .collect();
     let sum: f64 = weights.iter().sum();
     let line: Vec<f64> = (-reach..length as i64 + reach)
@@ -130,6 +135,24 @@ mod tests {
         let sum = |line: &[f32]| line[40..160].iter().sum::<f32>();
         assert!((sum(&soft) - sum(&sharp)).abs() < 1e-3);
         assert!((sum(&softer) - sum(&sharp)).abs() < 1e-2);
+    }
+
+    #[test]
+    fn a_yarn_is_shifted_by_parts_of_a_cell_as_well() {
+        let plan = stripes();
+        // The middle of the dye of one section, whose edges are at 40 and 60.
+        let middle = |shift| {
+            let line = section(&plan, Layer::Weft, 10, 200, shift, 1.0);
+            let section = line.iter().enumerate().skip(31).take(38);
+            let (sum, place) = section.fold((0.0, 0.0), |(sum, place), (x, value)| {
+                (sum + value, place + value * (x as f32 + 0.5))
+            });
+            place / sum
+        };
+        for shift in [-1.6, -0.4, 0.3, 0.6, 1.4] {
+            let moved = middle(shift) - middle(0.0);
+            assert!((moved - shift as f32).abs() < 0.05, "{shift}: {moved}");
+        }
     }
 
     #[test]

@@ -18,6 +18,8 @@ const BYTES_PER_BINDING_CELL: u128 = 24;
 const BYTES_PER_BATIK_CELL: u128 = 64;
 /// Bytes for one cell of what is kept of each dye, and for each of its waxes two numbers a place.
 const BYTES_PER_BATIK_STEP: u128 = 4;
+/// Bytes for one pixel of an enlarged photograph, as it is made and as it is kept.
+const BYTES_PER_PHOTO_PIXEL: u128 = 3 + 3 * 4;
 /// Bytes for one pixel of a picture that is mixed of several dyes, or blurred, in float32.
 const BYTES_PER_MIXED_PIXEL: u128 = 4 + 3 * 12;
 /// Bytes for one pixel of the picture: its shade, and its colour six times over: now, while it is
@@ -107,11 +109,15 @@ pub fn needed(scenario: &Scenario, Use { scale, fields }: Use) -> u128 {
     let mixed =
         scenario.batik.is_some() || matches!(scenario.look.texture, TextureLook::Ellipses(_));
     let mixed = if mixed { BYTES_PER_MIXED_PIXEL } else { 0 };
+    let looks = match scenario.look.texture {
+        TextureLook::Photo { .. } => BYTES_PER_PHOTO_PIXEL,
+        _ => 0,
+    };
     let places = scenario.record.sheet.len().max(8) as u128;
     BYTES_AT_LEAST
         + cells * (BYTES_PER_CELL + held + recorded + binding + batik)
         + cells / 2 * per_layer_cell
-        + pixels * (BYTES_PER_PIXEL + mixed)
+        + pixels * (BYTES_PER_PIXEL + mixed + looks)
         + places * BYTES_PER_SHEET_PLACE.min(40 * pixels)
 }
 

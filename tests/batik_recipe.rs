@@ -105,6 +105,90 @@ fn what_is_done_at_every_moment_is_told_in_order() {
 }
 
 #[test]
+fn from_the_back_wax_and_dye_lie_in_mirrored_places() {
+    let batik = |side: &str, show: &str| {
+        let wax = "Rectangle(size: (Cells(60), Cells(90)), centre: (0.25, 0.5))";
+        let text = recipe(
+            &format!("show: {show},"),
+            &format!(", look: (side: {side})"),
+        )
+        .replace("Disc(diameter: Cells(40))", wax)
+        .replace("Disc(diameter: Cells(70))", wax);
+        dyed(experiment(&text), 6)
+            .world()
+            .resource::<Picture>()
+            .clone()
+    };
+    for show in ["Cloth", "Drawing", "Permeation"] {
+        let left = |side| {
+            let picture = batik(side, show);
+            let light = |x| colour(&picture, (x, 40)).iter().sum::<f64>();
+            light(20) - light(95)
+        };
+        let (face, back) = (left("Face"), left("Back"));
+        assert!(face * back < 0.0, "{show}: {face} and {back}");
+    }
+}
+
+#[test]
+fn one_drawing_can_be_taken_on_either_ground() {
+    let folder = tempfile::tempdir().unwrap();
+    let half =
+        image::RgbImage::from_fn(40, 30, |x, _| image::Rgb([if x < 20 { 0 } else { 255 }; 3]));
+    half.save(folder.path().join("half.png")).unwrap();
+    let text = "(title: \"t\", cloth: (size: (Cells(40), Cells(30))), supply: [],
+      batik: (show: Drawing, steps: [
+        Wax(drawing: \"half.png\", ground: Light, crackle: (density: 0)), Boil,
+        Wax(drawing: \"half.png\", ground: Dark, crackle: (density: 0)), Boil]),
+      process: (duration: Steps(4)))";
+    let origin = Origin::File(folder.path().join("scenario.ron"));
+    let mut app = dyed(
+        Experiment::parse("scenario.ron", origin, text.into()).unwrap(),
+        0,
+    );
+    let left = |app: &bevy::app::App| colour(app.world().resource::<Picture>(), (5, 10))[0];
+    assert!(left(&app) < 50.0);
+    go_on(&mut app, 2);
+    assert!(left(&app) > 200.0);
+}
+
+#[test]
+fn what_a_recipe_would_ignore_is_refused() {
+    let told = |from: &str, to: &str| {
+        let text = recipe("", "").replacen(from, to, 1);
+        Experiment::parse("t", Origin::Memory, text)
+            .unwrap_err()
+            .to_string()
+    };
+    let cloth = "vary_porosity: (0.5, 1.0), twist: 0.025)";
+    let kasuri = format!("{cloth}, kasuri: (warp: Sections(pattern: Everywhere))");
+    for (from, to, expected) in [
+        (
+            "supply: []",
+            "supply: [Dose(shape: Everywhere)]",
+            "`supply`",
+        ),
+        ("supply: []", "supply: [], resist: Everywhere", "`resist`"),
+        ("supply: []", "supply: [], adsorption: ()", "`adsorption`"),
+        ("supply: []", "supply: [], dye: (equilibrium: 0.5)", "`dye`"),
+        (
+            "supply: []",
+            "supply: [], look: (colours: Walnut)",
+            "`look.colours`",
+        ),
+        (
+            "supply: []",
+            "supply: [], look: (show: BoundOnly)",
+            "`look`",
+        ),
+        (cloth, kasuri.as_str(), "`cloth.kasuri`"),
+    ] {
+        let told = told(from, to);
+        assert!(told.contains(expected), "{told}");
+    }
+}
+
+#[test]
 fn wax_is_seen_until_it_is_boiled_off() {
     let at = |batik: &str, step| {
         let app = dyed(experiment(&recipe(batik, "")), step);

@@ -127,9 +127,10 @@ fn open(step: &BatikStep, canvas: &Canvas, experiment: &Experiment) -> Raster {
     match step {
         BatikStep::Wax {
             drawing: Some(file),
+            ground,
             waxed,
             ..
-        } => match experiment.images.drawing(file) {
+        } => match experiment.images.drawing(file, *ground) {
             Some(drawing) => drawing.wax(canvas.nx, canvas.ny, *waxed),
             None => all,
         },

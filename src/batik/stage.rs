@@ -4,6 +4,7 @@
 //! was bound where the cloth is rinsed; the next dye moves in clean water. Colours of several dyes are
 //! mixed subtractively ([`mixing`](super::mixing)). Wax is seen until it is boiled off.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use bevy::ecs::system::SystemParam;
@@ -20,7 +21,7 @@ use crate::diffusion::FreeDye;
 use crate::ledger::Ledger;
 use crate::pattern::Raster;
 use crate::scenario::{
-    BatikShow, BatikSolver, BatikSpec, BatikStep, MOST_BATHS, Reading, Scenario,
+    BatikShow, BatikSolver, BatikSpec, BatikStep, MOST_BATHS, Reading, Scenario, Side,
 };
 use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
@@ -80,6 +81,8 @@ pub struct Batik {
     /// What is fixed of earlier dyes, `(layer, y, x)`.
     fixed: Vec<Vec<f32>>,
     mixture: Mixture,
+    /// The amount that the mixture takes for full, under the solvers of paper D.
+    full: f64,
     /// What cells exchange in sweeps; none where the solvers of paper D move the dye.
     exchange: Option<Exchange>,
     /// The bath that the cloth hangs in.
@@ -88,7 +91,16 @@ pub struct Batik {
     booked: f64,
     show: BatikShow,
     show_wax: bool,
+    side: Side,
     seed: u64,
+}
+
+/// A map of the cloth as it is seen from one side.
+fn as_seen(map: &Raster, side: Side) -> Cow<'_, Raster> {
+    match side {
+        Side::Face => Cow::Borrowed(map),
+        Side::Back => Cow::Owned(map.mirrored()),
+    }
 }
 
 /// The cloth and its dye.
@@ -111,24 +123,26 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         wax: None,
         layer: None,
         fixed: Vec::new(),
-        mixture: mixture(spec, scenario),
+        mixture: mixture(spec, darkest_at(scenario)),
+        full: darkest_at(scenario),
         exchange: exchange(spec, scenario, &cloth),
         sweeps: None,
         booked: 0.0,
         show: spec.show,
         show_wax: spec.show_wax,
+        side: scenario.look.side,
         seed: scenario.seed,
     });
 }
 
-/// The dyes of a recipe on its cloth.
-fn mixture(spec: &BatikSpec, scenario: &Scenario) -> Mixture {
+/// The dyes of a recipe on its cloth; `full` is how much of one a cell of paper D holds.
+fn mixture(spec: &BatikSpec, full: f64) -> Mixture {
     let undyed = to_rgb(spec.cloth);
     let dyestuff = |step: &BatikStep| match step {
         BatikStep::Dye { colour, bath, .. } => {
             let full = match spec.sweeps() {
                 true => 1.0 + bath.most_bound,
-                false => darkest_at(scenario),
+                false => full,
             };
             Some(Dyestuff::of_colour(to_rgb(*colour), undyed, full as f32))
         }
@@ -188,7 +202,8 @@ impl Batik {
                 None => {}
                 Some(Action::Wax(wax)) => {
                     let seed = self.seed.wrapping_add(self.begun as u64);
-                    self.layer = Some(WaxLayer::new(&wax.drawing, WaxLook::default(), seed));
+                    let seen = as_seen(&wax.drawing, self.side);
+                    self.layer = Some(WaxLayer::new(&seen, WaxLook::default(), seed));
                     self.wax = Some(wax.clone());
                 }
                 Some(Action::Boil) => {
@@ -286,13 +301,25 @@ fn measure(batik: Res<Batik>, mut vat: Vat) {
 
 /// Draws all dyes on the cloth, and the wax; or a map of the wax alone.
 fn draw(
-    batik: Res<Batik>,
+    mut batik: ResMut<Batik>,
     texture: Res<Texture>,
+    experiment: Res<TheExperiment>,
     cloth: Res<Cloth>,
     free: Res<FreeDye>,
     bound: Res<BoundDye>,
     mut picture: ResMut<Picture>,
 ) {
+    let full = darkest_at(&experiment.scenario);
+    if let Some(spec) = experiment
+        .scenario
+        .batik
+        .as_ref()
+        .filter(|_| full != batik.full)
+    {
+        // Someone looks at it in another way.
+        batik.mixture = mixture(spec, full);
+        batik.full = full;
+    }
     let map = match (batik.show, &batik.wax) {
         (BatikShow::Cloth, _) => None,
         (_, None) => Some(&Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0)),
@@ -300,7 +327,7 @@ fn draw(
         (BatikShow::Permeation, Some(wax)) => Some(&wax.permeation),
     };
     if let Some(map) = map {
-        texture.draw_map(map, &mut picture);
+        texture.draw_map(&as_seen(map, batik.side), &mut picture);
         return;
     }
     let now = match batik.exchange {

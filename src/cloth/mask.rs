@@ -15,6 +15,11 @@ impl Mask {
         Mask { nx, warp_up }
     }
 
+    /// Cells that it covers.
+    pub fn cells(&self) -> usize {
+        self.warp_up.len()
+    }
+
     /// Whether the warp is on top at a position.
     pub fn warp_up(&self, y: usize, x: usize) -> bool {
         self.warp_up[y * self.nx + x]

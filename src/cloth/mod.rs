@@ -171,17 +171,11 @@ impl Cloth {
     pub fn turned_over(&self) -> Self {
         let (ends, picks) = (self.warp.yarns.len(), self.weft.yarns.len());
         let up = |i: usize| !self.weave.warp_up(ends - 1 - i % ends, i / ends);
-        let Raster { nx, ny, values } = &self.resist;
-        let rows = values.chunks((*nx).max(1));
         Cloth::assemble(Parts {
             warp: self.warp.mirrored(),
             weave: WeaveMatrix::new(ends, (0..ends * picks).map(up).collect()),
             mask: self.mask.as_ref().map(Mask::turned_over),
-            resist: Raster {
-                nx: *nx,
-                ny: *ny,
-                values: rows.flat_map(|row| row.iter().rev().copied()).collect(),
-            },
+            resist: self.resist.mirrored(),
             ..self.parts.clone()
         })
     }

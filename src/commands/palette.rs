@@ -37,13 +37,9 @@ fn done(arguments: &Palette) -> Result<String, PhotoError> {
 }
 
 fn region(text: &str) -> Result<Region, PhotoError> {
-    let numbers: Vec<usize> = text
-        .split(',')
-        .filter_map(|n| n.trim().parse().ok())
-        .collect();
-    <Region>::try_from(numbers)
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    <Region>::try_from(numbers.unwrap_or_default())
         .ok()
-        .filter(|_| text.split(',').count() == 4)
         .ok_or_else(|| PhotoError::Region {
             text: text.into(),
             why: "it is left, top, width and height in pixels, as in `100,50,400,300`".into(),

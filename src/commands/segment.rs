@@ -50,11 +50,8 @@ fn beside(photo: &Path) -> PathBuf {
 }
 
 fn pitch(text: &str) -> Result<[f64; 2], PhotoError> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .filter_map(|n| n.trim().parse().ok())
-        .collect();
-    match numbers[..] {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    match numbers.unwrap_or_default()[..] {
         [warp, weft] if [warp, weft].iter().all(|p| (2.1..=1000.0).contains(p)) => Ok([warp, weft]),
         _ => Err(PhotoError::Pitch { text: text.into() }),
     }

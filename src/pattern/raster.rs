@@ -42,6 +42,16 @@ impl Raster {
         raster
     }
 
+    /// The same seen from the other side: left and right exchanged.
+    pub fn mirrored(&self) -> Self {
+        let rows = self.values.chunks(self.nx.max(1));
+        Raster {
+            nx: self.nx,
+            ny: self.ny,
+            values: rows.flat_map(|row| row.iter().rev().copied()).collect(),
+        }
+    }
+
     /// The value at a position.
     pub fn at(&self, y: usize, x: usize) -> f32 {
         self.values[y * self.nx + x]

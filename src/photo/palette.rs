@@ -48,6 +48,9 @@ const ENDS: (f64, f64) = (0.01, 0.06);
 /// How far from half-way the squares of the middle stop are, as a share of the range.
 const HALF_WAY: f64 = 0.10;
 
+/// Where lightness differs by less, cloth is dyed evenly.
+const EVEN: f64 = 0.01;
+
 /// A small square of cloth.
 #[derive(Clone, Copy)]
 struct Sample {
@@ -100,7 +103,7 @@ pub fn measure(photo: &Photo, region: Option<Region>) -> Result<Palette, PhotoEr
         .iter()
         .filter(|sample| {
             let half = 0.5 * (light + dark);
-            (sample.lab.lightness - half).abs() <= HALF_WAY * (light - dark)
+            (sample.lab.lightness - half).abs() <= HALF_WAY * (light - dark).max(EVEN)
         })
         .copied()
         .collect();

@@ -233,7 +233,7 @@ impl Kasuri {
             let longest = LONGEST_SIDE as f64;
             spec.shift
                 .check(&at.field("shift"), cell_mm, 0.0, longest)?;
-            spec.bleed.check(&at.field("bleed"), cell_mm, 0.0, 1000.0)?;
+            spec.bleed.check(&at.field("bleed"), cell_mm, 0.0, 200.0)?;
         }
         Ok(())
     }

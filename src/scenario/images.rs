@@ -1,11 +1,12 @@
 //! The pictures that a scenario's patterns name, loaded and checked before anything runs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use image::{RgbImage, imageops};
 
 use super::check::Problem;
+use super::error::{did_you_mean, nearest};
 use super::{Beside, Scenario};
 use crate::batik::drawing::{Drawing, Ground};
 use crate::cloth::{Grid, Mask};
@@ -21,7 +22,9 @@ pub struct Images {
     photos: BTreeMap<String, Photo>,
     masks: BTreeMap<String, Mask>,
     drafts: BTreeMap<String, Draft>,
-    drawings: BTreeMap<String, Drawing>,
+    drawings: BTreeMap<(String, Ground), Drawing>,
+    /// The drafts that lie beside the scenario, and are copied with it.
+    own_drafts: BTreeSet<String>,
 }
 
 /// What is wanted of a picture.
@@ -88,9 +91,9 @@ impl Images {
         self.masks.get(file)
     }
 
-    /// The drawing of this name, if it was loaded.
-    pub fn drawing(&self, file: &str) -> Option<&Drawing> {
-        self.drawings.get(file)
+    /// The drawing of this name on this ground, if it was loaded.
+    pub fn drawing(&self, file: &str, ground: Ground) -> Option<&Drawing> {
+        self.drawings.get(&(file.to_owned(), ground))
     }
 
     /// The draft of this name, if it was loaded.
@@ -100,22 +103,22 @@ impl Images {
 
     /// Bytes that loading the pictures takes at most: one after the other, and then all of them.
     pub fn bytes(&self) -> u128 {
-        let pixels = || {
-            self.rasters
-                .values()
-                .map(|raster| raster.values.len() as u128)
-        };
-        let largest = pixels().max().unwrap_or(0);
-        u128::from(BYTES_PER_PIXEL) * largest + 4 * pixels().sum::<u128>()
+        let rasters = self.rasters.values().map(|raster| raster.values.len());
+        let drawings = self.drawings.values().map(|d| d.drawn.values.len());
+        let photos = self.photos.values().map(|p| p.rgb.pixels().len());
+        let masks = self.masks.values().map(Mask::cells);
+        let all = rasters.chain(drawings).chain(photos).chain(masks);
+        let pixels: Vec<u128> = all.map(|pixels| pixels as u128).collect();
+        let largest = pixels.iter().max().copied().unwrap_or(0);
+        u128::from(BYTES_PER_PIXEL) * largest + 4 * pixels.iter().sum::<u128>()
     }
 
     /// The names of all pictures.
     pub fn files(&self) -> impl Iterator<Item = &str> {
         let all = self.rasters.keys().chain(self.photos.keys());
-        let drafts = self.drafts.keys().filter(|name| !is_bundled_draft(name));
         all.chain(self.masks.keys())
-            .chain(drafts)
-            .chain(self.drawings.keys())
+            .chain(&self.own_drafts)
+            .chain(self.drawings.keys().map(|(file, _)| file))
             .map(String::as_str)
     }
 
@@ -129,8 +132,11 @@ impl Images {
         for (file, wanted, at) in scenario.pictures() {
             let path = beside.path(file);
             if wanted == Wanted::Draft {
-                let draft = read_draft(file, beside).map_err(|why| at.problem(why))?;
+                let (draft, is_own) = read_draft(file, beside).map_err(|why| at.problem(why))?;
                 images.drafts.insert(file.to_owned(), draft);
+                if is_own {
+                    images.own_drafts.insert(file.to_owned());
+                }
                 continue;
             }
             let named = |why: String| at.problem(format!("the picture {}: {why}", path.display()));
@@ -148,10 +154,10 @@ impl Images {
                     let rgb = photo::Photo::from_image(image).picture();
                     images.photos.insert(name, Photo { rgb });
                 }
-                Wanted::Drawing(ground) if !images.drawings.contains_key(file) => {
+                Wanted::Drawing(ground) => {
                     let drawing = Drawing::read(&path, &bytes, ground);
                     let drawing = drawing.map_err(|why| at.problem(why.to_string()))?;
-                    images.drawings.insert(name, drawing);
+                    images.drawings.insert((name, ground), drawing);
                 }
                 Wanted::Mask if !images.masks.contains_key(file) => {
                     let mask = mask(&path, &bytes).map_err(|why| at.problem(why))?;
@@ -212,20 +218,18 @@ fn mask(path: &Path, bytes: &[u8]) -> Result<Mask, String> {
     Ok(Mask::new(mask.nx, mask.warp_on_top))
 }
 
-/// Whether a name is that of a draft that comes with the program.
-fn is_bundled_draft(name: &str) -> bool {
-    draft::bundled_names().contains(&name)
-}
-
-/// A draft that lies beside the scenario, or comes with the program.
-fn read_draft(file: &str, beside: &Beside) -> Result<Draft, String> {
-    let reading = if is_bundled_draft(file) {
-        Draft::load(file)
-    } else {
-        let named = |why| format!("the draft {}: {why}", beside.path(file).display());
-        wif::read(file, &beside.read(file).map_err(named)?)
+/// A draft that lies beside the scenario, or else comes with the program; and whether it is the former.
+fn read_draft(file: &str, beside: &Beside) -> Result<(Draft, bool), String> {
+    let bundled = draft::bundled_names();
+    let (reading, is_own) = match beside.read(file) {
+        Ok(bytes) => (wif::read(file, &bytes), true),
+        Err(_) if bundled.contains(&file) => (Draft::load(file), false),
+        Err(why) => {
+            let path = beside.path(file);
+            let mean = did_you_mean(nearest(file, bundled));
+            return Err(format!("the draft {}: {why}{mean}", path.display()));
+        }
     };
-    reading
-        .map(|reading| reading.draft)
-        .map_err(|why| why.to_string())
+    let reading = reading.map_err(|why| why.to_string())?;
+    Ok((reading.draft, is_own))
 }

@@ -217,7 +217,7 @@ impl LookSpec {
             let at = at.field("texture").field("Fractal");
             at.field("roughness").within(look.roughness, 0.0..=1.0)?;
             at.field("threshold").within(look.threshold, 0.0..=1.0)?;
-            at.field("unit_yarns").within(look.unit_yarns, 1..=1000)?;
+            at.field("unit_yarns").within(look.unit_yarns, 1..=100)?;
             at.field("contrast").within(look.contrast, 0.0..=1.0)?;
             at.field("relief").within(look.relief, 0.0..=1.0)?;
         }

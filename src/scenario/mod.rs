@@ -111,8 +111,29 @@ impl Scenario {
                 .field("kasuri")
                 .problem("a batik begins with undyed yarns; leave `kasuri` out".into()));
         }
+        let plain = LookSpec::default();
+        let look = at.field("look");
+        if self.look.colours != plain.colours || self.look.path != plain.path {
+            return Err(look.field("colours").problem(
+                "the dyes of a recipe have colours of their own; leave `colours` and `path` out"
+                    .into(),
+            ));
+        }
         if !batik.sweeps() {
             return Ok(());
+        }
+        if self.look.darkest_at.is_some() || self.look.show != plain.show {
+            return Err(look.problem(
+                "sweeps show all dye, full at 1 + `most_bound`; leave `show` and `darkest_at` out"
+                    .into(),
+            ));
+        }
+        if self.dye != DyeSpec::default() || self.cloth.paths != Paths::default() {
+            return Err(at.field("batik").field("solver").problem(
+                "sweeps take paper B's numbers, not `dye` and `paths`; leave these out, or take \
+                 `solver: Diffusion`"
+                    .into(),
+            ));
         }
         let instead = "the baths of a recipe by `PixelDiffusing` are all its dye, and bind by \
                        themselves; leave this out, or take `solver: Diffusion`";

@@ -84,7 +84,7 @@ pub enum DrawingError {
 }
 
 /// Which colour of a picture is its ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub enum Ground {
     /// The one that most of its frame has.
     #[default]
