@@ -4,4 +4,5 @@ fn main() {
     println!("cargo::rerun-if-changed=assets/scenarios");
     println!("cargo::rerun-if-changed=assets/drafts");
     println!("cargo::rerun-if-changed=assets/figures");
+    println!("cargo::rerun-if-changed=assets/drapes");
 }

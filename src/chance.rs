@@ -44,6 +44,10 @@ pub enum Purpose {
     Crackle = 40,
     /// Where waxed cloth was crumpled.
     Crumple = 41,
+    /// Gusts of the wind on draped cloth.
+    Wind = 32,
+    /// Slight waves of draped cloth in the beginning.
+    Unevenness = 33,
 }
 
 impl Chance {

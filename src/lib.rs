@@ -45,6 +45,7 @@ pub mod chance;
 pub mod cloth;
 pub mod diffusion;
 pub mod draft;
+pub mod drape;
 pub mod kasuri;
 pub mod ledger;
 pub mod memory;

@@ -1,0 +1,281 @@
+//! One implicit time step: backward Euler, or the second-order backward difference (BDF2), after Choi
+//! and Ko (model section 8).
+//!
+//! Both ask for the move Δ = xⁿ⁺¹ − xⁿ at which
+//!
+//! M(Δ − Δ₀) = α·f(xⁿ + Δ, v(Δ)),
+//!
+//! | | α | Δ₀ | v(Δ) | β |
+//! |---|---|---|---|---|
+//! | Euler | h² | h·vⁿ | Δ/h | h |
+//! | BDF2 | 4h²/9 | δ/3 + (h/9)(8vⁿ − 2vⁿ⁻¹) | (3Δ − δ)/(2h) | 2h/3 |
+//!
+//! with δ = xⁿ − xⁿ⁻¹. The forces are taken linear about xⁿ (one step of Newton's method), so that
+//! M − α·∂f/∂x − β·∂f/∂v is to be solved once. Conjugate gradients begin with the best sum of multiples of
+//! the last two moves: cloth hardly changes its mind within a 240th of a second.
+
+use bevy::math::DVec3;
+
+use super::collide::distance::{Pair, combine};
+use super::contact::{Added, Contact, Rule, Touch, product};
+use super::drape::{Given, Integrator, Proposed, Sheet};
+use super::pcg::Work;
+use super::response::Response;
+use super::rows::{Rows, each, each2};
+use super::system::System;
+use super::wind::drag;
+use super::yarns::Yarns;
+
+/// What implicit steps keep, so that no memory is asked for in each.
+pub(super) struct Implicit {
+    response: Response,
+    mass: Rows<f32>,
+    own: Rows<f32>,
+    /// Positions, and velocities, about which forces are linear.
+    x: Rows,
+    v: Rows,
+    /// α·f + M·Δ₀.
+    pull: Rows,
+    u: Rows<f32>,
+    /// The last two moves.
+    guesses: [Rows<f32>; 2],
+    solver: Work,
+    yarns: Yarns,
+    contacts: Vec<Contact>,
+}
+
+/// α, β and whether the step is BDF2's.
+#[derive(Clone, Copy)]
+struct Scheme {
+    alpha: f64,
+    beta: f64,
+    bdf2: bool,
+}
+
+impl Scheme {
+    fn new(given: &Given) -> Self {
+        let h = given.step;
+        let same = |last: f64| (last - h).abs() < 1e-9 * h;
+        // The first step has no past, nor has one of another length.
+        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same) {
+            Scheme {
+                alpha: 4.0 * h * h / 9.0,
+                beta: 2.0 * h / 3.0,
+                bdf2: true,
+            }
+        } else {
+            Scheme {
+                alpha: h * h,
+                beta: h,
+                bdf2: false,
+            }
+        }
+    }
+
+    /// v(Δ).
+    fn velocity(self, by: DVec3, last_move: DVec3, h: f64) -> DVec3 {
+        if self.bdf2 {
+            (3.0 * by - last_move) / (2.0 * h)
+        } else {
+            by / h
+        }
+    }
+}
+
+impl Implicit {
+    pub fn new(sheet: &Sheet) -> Self {
+        let (nx, ny) = sheet.links.particles;
+        let (three, three_single) = (Rows::zero(nx, ny, 3), Rows::zero(nx, ny, 3));
+        Implicit {
+            response: Response::new((nx, ny)),
+            mass: Rows::zero(nx, ny, 2),
+            own: Rows::zero(nx, ny, 6),
+            x: three.clone(),
+            v: three.clone(),
+            pull: three,
+            u: three_single.clone(),
+            guesses: [three_single.clone(), three_single],
+            solver: Work::new((nx, ny)),
+            yarns: Yarns::new((nx, ny)),
+            contacts: Vec::new(),
+        }
+    }
+
+    /// The move of one step.
+    pub fn propose(&mut self, given: &Given) -> Proposed {
+        let scheme = Scheme::new(given);
+        let h = given.step;
+        let (state, sheet) = (given.state, given.sheet);
+        self.take_links(given, scheme);
+        self.take_inertia_and_air(given, scheme);
+        let touches = self.take_contacts(given, scheme);
+        let (mass, pull) = (&sheet.mass, &self.pull);
+        each(&mut self.solver.r, |y, r| {
+            let r: [&mut [f32]; 3] = r.planes().take();
+            let pull: [&[f64]; 3] = pull.lines(y as isize, 0, 0);
+            let [free] = mass.lines(y as isize, 1, 0);
+            for (r, pull) in r.into_iter().zip(pull) {
+                for ((r, pull), free) in r.iter_mut().zip(pull).zip(free) {
+                    *r = (pull * free) as f32;
+                }
+            }
+        });
+        let system = System {
+            mass: &self.mass,
+            links: &self.response,
+            own: &self.own,
+            contacts: &self.contacts,
+        };
+        self.yarns.factor(&system);
+        let [last, before] = &self.guesses;
+        self.solver.begin(&system, [last, before], &mut self.u);
+        let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);
+        let solved = self.solver.solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
+        self.guesses.swap(0, 1);
+        self.guesses[0].clone_from(&self.u);
+        let nx = sheet.links.particles.0;
+        let moves: Vec<DVec3> = (0..state.x.len())
+            .map(|i| {
+                let u = [0, 1, 2].map(|c| f64::from(self.u.get(i % nx, i / nx, c)));
+                given.lead[i] + DVec3::from_array(u)
+            })
+            .collect();
+        let v = moves.iter().zip(&state.last_move);
+        Proposed {
+            v: v.map(|(by, last)| scheme.velocity(*by, *last, h)).collect(),
+            moves,
+            touches,
+            alpha: scheme.alpha,
+            solved,
+        }
+    }
+
+    /// The forces and blocks of links and creases. Pins have led their particles on already.
+    fn take_links(&mut self, given: &Given, scheme: Scheme) {
+        let (state, sheet) = (given.state, given.sheet);
+        for (i, lead) in given.lead.iter().enumerate() {
+            self.x.set_particle(i, state.x[i] + *lead);
+            let v = scheme.velocity(*lead, state.last_move[i], given.step);
+            self.v.set_particle(i, v);
+        }
+        for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
+            *single = *double as f32;
+        }
+        let coefficients = Some((scheme.alpha, scheme.beta));
+        self.response.compute(&sheet.links, &self.x, &self.v, coefficients);
+        self.pull.all_mut().fill(0.0);
+        self.response.add_forces(&mut self.pull);
+        for crease in &sheet.creases {
+            crease.respond(&self.x, &mut self.pull, &mut self.response, scheme.alpha);
+        }
+    }
+
+    /// Makes α·f + M·Δ₀ of the links' forces, gravity, drag and inertia.
+    fn take_inertia_and_air(&mut self, given: &Given, scheme: Scheme) {
+        let h = given.step;
+        let (state, mass, nx) = (given.state, &given.sheet.mass, self.x.nx);
+        let (x_rows, v_rows) = (&self.x, &self.v);
+        each2(&mut self.pull, &mut self.own, |y, pull, own| {
+            let [px, py, pz] = pull.planes().take();
+            let own: [&mut [f32]; 6] = own.planes().take();
+            for x in 0..nx {
+                let i = y * nx + x;
+                let m = mass.get(x, y, 0);
+                let inert = if scheme.bdf2 {
+                    let v = 8.0 * state.v[i] - 2.0 * state.last_v[i];
+                    state.last_move[i] / 3.0 + (h / 9.0) * v
+                } else {
+                    h * state.v[i]
+                };
+                let mut force = DVec3::new(px[x], py[x], pz[x]) + m * given.settings.gravity;
+                let mut block = [0.0; 6];
+                if given.settings.air > 0.0 && m > 0.0 {
+                    let wind = given.wind.at(state.x[i], given.time + h);
+                    let area = area_vector(x_rows, x, y);
+                    let (of_air, loses) = drag(wind - state.v[i], area, given.settings.air);
+                    // Drag by the velocity at the end of the step, linear about the one now.
+                    force += of_air - product(loses, v_rows.vector(x, y) - state.v[i]);
+                    block = loses.map(|value| scheme.beta * value);
+                }
+                let all = scheme.alpha * force + m * inert;
+                (px[x], py[x], pz[x]) = (all.x, all.y, all.z);
+                for c in 0..6 {
+                    own[c][x] = block[c] as f32;
+                }
+            }
+        });
+    }
+
+    /// Adds contacts; returns those of particles with what does not move.
+    fn take_contacts(&mut self, given: &Given, scheme: Scheme) -> Vec<Touch> {
+        let state = given.state;
+        let count = state.x.len();
+        let rule = Rule {
+            apart: given.settings.thickness,
+            friction: given.settings.friction,
+            alpha: scheme.alpha,
+            step: given.step,
+        };
+        // Where the particle will about go: on as before.
+        let guess = |i: usize| match state.last_step {
+            _ if i >= count => DVec3::ZERO,
+            Some(_) => state.last_move[i],
+            None => state.v[i] * given.step,
+        };
+        let corner = |i: usize| match state.x.get(i) {
+            Some(x) => *x,
+            None => given.colliders.mesh.corners[i - count],
+        };
+        let mut touches = Vec::new();
+        let mut touch = |i: usize, distance: f64, normal: DVec3| {
+            // What was pressed stays in touch until a step has shown that it leaves: deciding anew
+            // in every step would let cloth at rest tremble.
+            let rests = state.anchors[i].is_some() && distance < 1.1 * rule.apart;
+            if given.mobility[i] > 0.0 && (rests || rule.acts(distance, guess(i).dot(normal))) {
+                touches.push(Touch {
+                    particle: i as u32,
+                    normal,
+                    distance,
+                });
+            }
+        };
+        self.contacts.clear();
+        let mut added = Added {
+            own: &mut self.own,
+            pull: &mut self.pull,
+            contacts: &mut self.contacts,
+        };
+        for exact in &given.colliders.exact {
+            for (i, x) in state.x.iter().enumerate() {
+                let (distance, normal) = exact.distance(*x, given.covered);
+                touch(i, distance, normal);
+            }
+        }
+        for pair in given.pairs {
+            let corners = pair.corners().map(|i| i as usize);
+            let alone = matches!(pair, Pair::PointTriangle(_)) && corners[0] < count;
+            if alone && corners[1] >= count {
+                let x = corners.map(corner);
+                let out = combine(pair.weights(x), x);
+                touch(corners[0], out.length(), out.normalize_or_zero());
+            } else {
+                added.pair(*pair, corner, guess, |i| given.mobility[i], rule);
+            }
+        }
+        for touch in &touches {
+            let i = touch.particle as usize;
+            let mass = 1.0 / given.mobility[i];
+            added.touch(*touch, mass, (state.x[i], guess(i)), state.anchors[i], rule);
+        }
+        touches
+    }
+}
+
+/// The area vector of the cloth around a particle, out of its front, from its neighbours, m².
+fn area_vector(at: &Rows, x: usize, y: usize) -> DVec3 {
+    let (left, right) = (x.saturating_sub(1), (x + 1).min(at.nx - 1));
+    let (up, down) = (y.saturating_sub(1), (y + 1).min(at.ny - 1));
+    let across = at.vector(right, y) - at.vector(left, y);
+    let along = at.vector(x, down) - at.vector(x, up);
+    0.25 * along.cross(across)
+}
