@@ -16,6 +16,8 @@
 //! | [`batik`] | wax and its cracks, and baths one after the other | [`Batik`](batik::stage::Batik) |
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
+//! | [`drape`] | the cloth hangs, falls, is creased | [`Drape`](drape::drape::Drape) |
+//! | [`studio`] | draped cloth is seen in the light | — |
 //! | [`record`] | frames are kept | the output folder |
 //! | [`photo`] | photographs of cloth are read: the mask of warp and weft, the colours | [`Mask`](photo::Mask) |
 //!
@@ -54,6 +56,7 @@ pub mod photo;
 pub mod record;
 pub mod scenario;
 pub mod schedule;
+pub mod studio;
 pub mod supply;
 pub mod texture;
 

@@ -27,7 +27,7 @@ use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
 };
 use crate::supply::SupplySystems;
-use crate::texture::{DrawDye, Picture, Rgb, Texture, darkest_at, to_rgb};
+use crate::texture::{DrawDye, OtherSide, Picture, Rgb, Texture, darkest_at, to_rgb};
 
 /// Batik, where the scenario has a recipe for it.
 pub struct BatikPlugin;
@@ -76,8 +76,8 @@ pub struct Batik {
     /// The actions that have begun; one more once the last has ended.
     begun: usize,
     wax: Option<Arc<Wax>>,
-    /// The wax as it is seen.
-    layer: Option<WaxLayer>,
+    /// The wax as it is seen from either side, face first; made when a side is first looked at.
+    layers: [Option<WaxLayer>; 2],
     /// What is fixed of earlier dyes, `(layer, y, x)`.
     fixed: Vec<Vec<f32>>,
     mixture: Mixture,
@@ -91,8 +91,9 @@ pub struct Batik {
     booked: f64,
     show: BatikShow,
     show_wax: bool,
-    side: Side,
     seed: u64,
+    /// The seed of the wax that is on the cloth.
+    wax_seed: u64,
 }
 
 /// A map of the cloth as it is seen from one side.
@@ -121,7 +122,7 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         recipe,
         begun: 0,
         wax: None,
-        layer: None,
+        layers: [None, None],
         fixed: Vec::new(),
         mixture: mixture(spec, darkest_at(scenario)),
         full: darkest_at(scenario),
@@ -130,8 +131,8 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         booked: 0.0,
         show: spec.show,
         show_wax: spec.show_wax,
-        side: scenario.look.side,
         seed: scenario.seed,
+        wax_seed: scenario.seed,
     });
 }
 
@@ -201,14 +202,13 @@ impl Batik {
             match self.recipe.actions.get(self.begun) {
                 None => {}
                 Some(Action::Wax(wax)) => {
-                    let seed = self.seed.wrapping_add(self.begun as u64);
-                    let seen = as_seen(&wax.drawing, self.side);
-                    self.layer = Some(WaxLayer::new(&seen, WaxLook::default(), seed));
+                    self.wax_seed = self.seed.wrapping_add(self.begun as u64);
+                    self.layers = [None, None];
                     self.wax = Some(wax.clone());
                 }
                 Some(Action::Boil) => {
                     self.wax = None;
-                    self.layer = None;
+                    self.layers = [None, None];
                 }
                 Some(Action::Dye { bath, .. }) => {
                     let (nx, ny) = (vat.cloth.grid.nx, vat.cloth.grid.ny);
@@ -305,9 +305,9 @@ fn draw(
     texture: Res<Texture>,
     experiment: Res<TheExperiment>,
     cloth: Res<Cloth>,
-    free: Res<FreeDye>,
-    bound: Res<BoundDye>,
+    (free, bound): (Res<FreeDye>, Res<BoundDye>),
     mut picture: ResMut<Picture>,
+    other: Option<ResMut<OtherSide>>,
 ) {
     let full = darkest_at(&experiment.scenario);
     if let Some(spec) = experiment
@@ -320,16 +320,6 @@ fn draw(
         batik.mixture = mixture(spec, full);
         batik.full = full;
     }
-    let map = match (batik.show, &batik.wax) {
-        (BatikShow::Cloth, _) => None,
-        (_, None) => Some(&Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0)),
-        (BatikShow::Drawing, Some(wax)) => Some(&wax.drawing),
-        (BatikShow::Permeation, Some(wax)) => Some(&wax.permeation),
-    };
-    if let Some(map) = map {
-        texture.draw_map(&as_seen(map, batik.side), &mut picture);
-        return;
-    }
     let now = match batik.exchange {
         Some(_) => {
             // Before the first bath nothing is bound, and there is no field of it.
@@ -338,17 +328,44 @@ fn draw(
         }
         None => texture.amounts(&cloth, &free, &bound),
     };
-    let colour = |i: usize| -> Rgb {
-        let mut amounts = [0.0; MOST_BATHS + 1];
-        for (amount, fixed) in amounts.iter_mut().zip(&batik.fixed) {
-            *amount = fixed[i];
+    batik.draw_side(&cloth, &texture, &now, &mut picture);
+    if let Some(mut other) = other {
+        let OtherSide { texture, picture } = &mut *other;
+        batik.draw_side(&cloth, texture, &now, picture);
+    }
+}
+
+impl Batik {
+    /// Draws the side of the cloth that a texture is for; `now` is the dye of the running bath.
+    fn draw_side(&mut self, cloth: &Cloth, texture: &Texture, now: &[f32], picture: &mut Picture) {
+        let side = texture.side;
+        let map = match (self.show, &self.wax) {
+            (BatikShow::Cloth, _) => None,
+            (_, None) => Some(&Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0)),
+            (BatikShow::Drawing, Some(wax)) => Some(&wax.drawing),
+            (BatikShow::Permeation, Some(wax)) => Some(&wax.permeation),
+        };
+        if let Some(map) = map {
+            texture.draw_map(&as_seen(map, side), picture);
+            return;
         }
-        amounts[batik.fixed.len()] = now[i];
-        batik.mixture.colour(&amounts)
-    };
-    texture.draw_colours(&cloth, colour, &mut picture);
-    if let (true, Some(layer)) = (batik.show_wax, &batik.layer) {
-        let Picture { width, height, rgb } = &mut *picture;
+        let colour = |i: usize| -> Rgb {
+            let mut amounts = [0.0; MOST_BATHS + 1];
+            for (amount, fixed) in amounts.iter_mut().zip(&self.fixed) {
+                *amount = fixed[i];
+            }
+            amounts[self.fixed.len()] = now[i];
+            self.mixture.colour(&amounts)
+        };
+        texture.draw_colours(cloth, colour, picture);
+        let (true, Some(wax)) = (self.show_wax, &self.wax) else {
+            return;
+        };
+        let layer = self.layers[side as usize].get_or_insert_with(|| {
+            let seen = as_seen(&wax.drawing, side);
+            WaxLayer::new(&seen, WaxLook::default(), self.wax_seed)
+        });
+        let Picture { width, height, rgb } = picture;
         let pixels = rgb.as_chunks::<3>().0;
         let cloth = Colours::of(*width, *height, |y, x| {
             pixels[y * *width + x].map(|channel| f32::from(channel) / 255.0)
