@@ -10,6 +10,7 @@ use super::collide::topology::Topology;
 use super::crease::{Crease, press};
 use super::drape::{Drape, Settings, Sheet};
 use super::exact::{crossings, sunk};
+use super::limit::locks_at;
 use super::pins::Pin;
 use super::spec::{ColliderSpec, DrapeSpec, Fold, Hold, Outline, Start, Xyz};
 use super::weights::assemble;
@@ -79,6 +80,10 @@ impl DrapeSpec {
             thickness: 1e-3 * solver.apart_mm,
             friction: measured.friction,
             itself: solver.itself,
+            locks_at: locks_at(
+                9.81e-3 * measured.weight * size.0.max(size.1),
+                measured.stretch.0.min(measured.stretch.1),
+            ),
         };
         let sheet = Sheet {
             links,

@@ -19,6 +19,7 @@ use super::crease::CreaseLink;
 use super::explicit::{Explicit, Pulls};
 use super::implicit::Implicit;
 use super::lattice::Links;
+use super::limit::{LOCKED, limit};
 use super::pcg::Solved;
 use super::pins::Pin;
 use super::rows::Rows;
@@ -59,6 +60,8 @@ pub struct Settings {
     pub friction: f64,
     /// Whether the cloth collides with itself.
     pub itself: bool,
+    /// The strain at which yarns lock; implicit steps do not go beyond it.
+    pub locks_at: f64,
 }
 
 impl Default for Settings {
@@ -73,6 +76,7 @@ impl Default for Settings {
             thickness: 1e-3,
             friction: 0.3,
             itself: true,
+            locks_at: LOCKED,
         }
     }
 }
@@ -378,6 +382,10 @@ impl Drape {
             });
         }
         let mut changed = vec![false; mobility.len()];
+        if matches!(self.settings.integrator, Integrator::BackwardEuler | Integrator::Bdf2) {
+            let (links, most) = (&self.sheet.links, self.settings.locks_at);
+            limit(links, most, &mobility, &self.state.x, &mut proposed.moves, &mut changed);
+        }
         let (filtered, pairs) = self.filter(&mobility, covered, &mut proposed.moves, &mut changed);
         self.take(proposed, changed, &mobility, step)
             .map(|solved| StepReport {

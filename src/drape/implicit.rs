@@ -20,7 +20,7 @@ use super::collide::distance::{Pair, combine};
 use super::contact::{Added, Contact, Rule, Touch, product};
 use super::drape::{Given, Integrator, Proposed, Sheet};
 use super::pcg::Work;
-use super::response::Response;
+use super::response::{Ahead, Response};
 use super::rows::{Rows, each, each2};
 use super::system::System;
 use super::wind::drag;
@@ -34,6 +34,8 @@ pub(super) struct Implicit {
     /// Positions, and velocities, about which forces are linear.
     x: Rows,
     v: Rows,
+    /// The moves that are about to be made.
+    coming: Rows,
     /// α·f + M·Δ₀.
     pull: Rows,
     u: Rows<f32>,
@@ -92,6 +94,7 @@ impl Implicit {
             own: Rows::zero(nx, ny, 6),
             x: three.clone(),
             v: three.clone(),
+            coming: three.clone(),
             pull: three,
             u: three_single.clone(),
             guesses: [three_single.clone(), three_single],
@@ -157,12 +160,18 @@ impl Implicit {
             self.x.set_particle(i, state.x[i] + *lead);
             let v = scheme.velocity(*lead, state.last_move[i], given.step);
             self.v.set_particle(i, v);
+            let held = given.mobility[i] <= 0.0;
+            self.coming.set_particle(i, if held { DVec3::ZERO } else { about(given, i) });
         }
         for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
             *single = *double as f32;
         }
-        let coefficients = Some((scheme.alpha, scheme.beta));
-        self.response.compute(&sheet.links, &self.x, &self.v, coefficients);
+        let ahead = Ahead {
+            alpha: scheme.alpha,
+            beta: scheme.beta,
+            moves: &self.coming,
+        };
+        self.response.compute(&sheet.links, &self.x, &self.v, Some(ahead));
         self.pull.all_mut().fill(0.0);
         self.response.add_forces(&mut self.pull);
         for crease in &sheet.creases {
@@ -216,12 +225,7 @@ impl Implicit {
             alpha: scheme.alpha,
             step: given.step,
         };
-        // Where the particle will about go: on as before.
-        let guess = |i: usize| match state.last_step {
-            _ if i >= count => DVec3::ZERO,
-            Some(_) => state.last_move[i],
-            None => state.v[i] * given.step,
-        };
+        let guess = |i: usize| if i < count { about(given, i) } else { DVec3::ZERO };
         let corner = |i: usize| match state.x.get(i) {
             Some(x) => *x,
             None => given.colliders.mesh.corners[i - count],
@@ -268,6 +272,14 @@ impl Implicit {
             added.touch(*touch, mass, (state.x[i], guess(i)), state.anchors[i], rule);
         }
         touches
+    }
+}
+
+/// Where a particle will about go: on as before.
+fn about(given: &Given, i: usize) -> DVec3 {
+    match given.state.last_step {
+        Some(last) => given.state.last_move[i] * (given.step / last),
+        None => given.state.v[i] * given.step,
     }
 }
 

@@ -97,7 +97,7 @@ impl Material {
             shear,
             bending: (1e-6 * bending.0, 1e-6 * bending.1),
             friction,
-            damping: 5e-5,
+            damping: 2e-6,
         }
     }
 

@@ -9,6 +9,7 @@ pub mod exact;
 pub mod explicit;
 mod implicit;
 pub mod lattice;
+pub mod limit;
 pub mod links;
 pub mod material;
 pub mod pcg;
