@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::RecordError;
 use crate::cloth::Cloth;
 use crate::scenario::{Draping, Experiment, ViewSpec};
-use crate::studio::camera::{Subject, narrower, stand};
+use crate::studio::camera::Way;
 use crate::studio::hung::Hung;
 use crate::studio::light::{self, Quality};
 use crate::studio::offscreen::{self, NoFrame, Offscreen, most_pixels};
@@ -16,7 +16,7 @@ use crate::texture::{OtherSide, Picture, see_both_sides};
 pub struct Draped {
     hung: Hung,
     offscreen: Offscreen,
-    subject: Subject,
+    way: Way,
 }
 
 impl Draped {
@@ -63,7 +63,8 @@ impl Draped {
             return Err(NoFrame::TooLarge { pixels, most }.into());
         }
         things::spawn(world, &hung.spec, &hung.drape);
-        light::spawn(world, &hung.view, subject, Quality::Fine);
+        let way = Way::new(&hung.view, &subject);
+        light::spawn(world, &hung.view, &subject, Quality::Fine);
         let bundle = light::camera(world, &hung.view);
         let offscreen = Offscreen::new(world, hung.view.pixels, bundle);
         let shapes = cloth::shapes(&hung.front());
@@ -78,7 +79,7 @@ impl Draped {
         let draped = Draped {
             hung,
             offscreen,
-            subject,
+            way,
         };
         draped.stand(app.world_mut(), 0.0);
         draped.offscreen.warm_up(app)?;
@@ -113,10 +114,6 @@ impl Draped {
     }
 
     fn stand(&self, world: &mut World, share: f64) {
-        let view = &self.hung.view;
-        let aspect = f64::from(view.pixels.0) / f64::from(view.pixels.1);
-        let angle = narrower(view.field_of_view.to_radians(), aspect);
-        let camera = stand(view.camera.at(share), self.subject, angle);
-        self.offscreen.stand(world, camera);
+        self.offscreen.stand(world, self.way.at(share));
     }
 }

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::camera::Subject;
 use super::fine::Fine;
 use crate::drape::drape::{Drape, DrapeError};
-use crate::drape::spec::DrapeSpec;
+use crate::drape::spec::{DrapeSpec, Start};
 use crate::scenario::check::{Checker, Problem};
 use crate::scenario::{Draping, Scenario, ViewSpec};
 
@@ -118,7 +118,15 @@ impl Hung {
 
     /// What is to be seen of it.
     pub fn subject(&self) -> Subject {
-        Subject::around(&self.places())
+        let mut places = self.places();
+        if let Start::Sphere { centre_m, radius_m } = self.spec.start {
+            // The ball that the cloth is on.
+            let centre = DVec3::new(centre_m.0, centre_m.1, centre_m.2);
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                places.extend([centre + radius_m * axis, centre - radius_m * axis]);
+            }
+        }
+        Subject::new(places)
     }
 
     /// Where its particles are, m; only those that are cloth.

@@ -44,7 +44,7 @@ pub struct Lamp;
 pub struct Ground;
 
 /// Lights the studio for a subject.
-pub fn spawn(world: &mut World, view: &ViewSpec, subject: Subject, quality: Quality) {
+pub fn spawn(world: &mut World, view: &ViewSpec, subject: &Subject, quality: Quality) {
     let (parts, size) = match quality {
         Quality::Fine => (9, 2048),
         Quality::Fast => (1, 1024),
@@ -136,15 +136,14 @@ fn ground_colour(view: &ViewSpec) -> Color {
     Color::srgb(r, g, b)
 }
 
-/// Where the floor is: what the scenario names, or a little below what is seen.
+/// Where the ground is, m.
 #[derive(Resource, Debug, Clone, Copy)]
 pub struct FloorHeight(pub f64);
 
-fn ground(world: &mut World, view: &ViewSpec, subject: Subject) {
-    let lowest = subject.centre.y - 1.05 * subject.radius;
+fn ground(world: &mut World, view: &ViewSpec, subject: &Subject) {
     let height = world
         .get_resource::<FloorHeight>()
-        .map_or(lowest, |floor| floor.0);
+        .map_or(0.0, |floor| floor.0);
     let bowl = bowl(DVec2::new(subject.centre.x, subject.centre.z), height, subject.radius);
     let mesh = world.resource_mut::<Assets<Mesh>>().add(bowl);
     let material = world

@@ -20,19 +20,21 @@ const PAINT: Color = Color::srgb(0.78, 0.76, 0.72);
 /// How far below the surface of a ball its picture lies, m: cloth lies on it without showing through.
 const BELOW: f64 = 5e-4;
 
-/// Puts everything there that a drape names.
-pub fn spawn(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
-    let floors = spec.on.iter().filter_map(|thing| match thing {
+/// The height of the ground: the floor that a drape names, or 0, or just below the cloth.
+fn floor_height(spec: &DrapeSpec, drape: &Drape) -> f64 {
+    let named = spec.on.iter().filter_map(|thing| match thing {
         ColliderSpec::Floor { height_m } => Some(*height_m),
         _ => None,
     });
-    let floor = floors.reduce(f64::max);
-    if let Some(floor) = floor {
-        world.insert_resource(FloorHeight(floor));
-    } else {
-        world.remove_resource::<FloorHeight>();
-    }
-    let floor = floor.unwrap_or(0.0);
+    let heights = drape.positions().iter().map(|place| place.y);
+    let lowest = heights.fold(0.0, f64::min);
+    named.reduce(f64::max).unwrap_or(lowest)
+}
+
+/// Puts everything there that a drape names.
+pub fn spawn(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
+    let floor = floor_height(spec, drape);
+    world.insert_resource(FloorHeight(floor));
     let solid = &drape.colliders().mesh;
     if !solid.triangles.is_empty() {
         put(world, faceted(solid), WOOD, Transform::IDENTITY);
@@ -40,10 +42,7 @@ pub fn spawn(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
     for thing in &spec.on {
         match thing {
             ColliderSpec::Ball { centre_m, radius_m } => {
-                let ball = Sphere::new((radius_m - BELOW) as f32);
-                let mesh = ball.mesh().uv(96, 48);
-                put(world, mesh, PAINT, Transform::from_translation(place(*centre_m)));
-                stand(world, place(*centre_m), floor, 0.25 * *radius_m as f32, 0.5 * *radius_m as f32);
+                ball(world, *centre_m, *radius_m, floor);
             }
             ColliderSpec::RoundTable {
                 centre_m,
@@ -66,8 +65,10 @@ pub fn spawn(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
             ColliderSpec::Floor { .. } | ColliderSpec::Mesh { .. } => {}
         }
     }
-    if let Start::Hanging { .. } = spec.start {
-        pegs(world, spec, drape);
+    match spec.start {
+        Start::Hanging { .. } => pegs(world, spec, drape),
+        Start::Sphere { centre_m, radius_m } => ball(world, centre_m, radius_m, floor),
+        Start::Flat { .. } => {}
     }
 }
 
@@ -86,6 +87,15 @@ fn put(world: &mut World, mesh: impl Into<Mesh>, colour: Color, at: Transform) {
             ..default()
         });
     world.spawn((Thing, Mesh3d(mesh), MeshMaterial3d(material), at));
+}
+
+/// A ball on a foot.
+fn ball(world: &mut World, centre: (f64, f64, f64), radius: f64, floor: f64) {
+    let mesh = Sphere::new((radius - BELOW) as f32).mesh().uv(96, 48);
+    let at = Transform::from_translation(place(centre));
+    put(world, mesh, PAINT, at);
+    let radius = radius as f32;
+    stand(world, place(centre), floor, 0.2 * radius, 0.5 * radius);
 }
 
 /// A round foot from what it carries down to the floor.
