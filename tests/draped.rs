@@ -51,8 +51,16 @@ fn what_is_wrong_with_a_drape_is_told_with_its_place() {
     for (wrong, right, expected) in [
         ("radius_m: 0.08", "radius_m: -1", "drape.on[0].radius_m"),
         ("settle_s: 0.1", "setle_s: 0.1", "setle_s"),
-        ("particles: (17, 17)", "particles: (1, 17)", "drape.particles[0]"),
-        ("moves_s: 0.2", "camera: Still(elevation: 95)", "view.camera.elevation"),
+        (
+            "particles: (17, 17)",
+            "particles: (1, 17)",
+            "drape.particles[0]",
+        ),
+        (
+            "moves_s: 0.2",
+            "camera: Still(elevation: 95)",
+            "view.camera.elevation",
+        ),
         ("pixels: (200, 150)", "pixels: (200, 5)", "view.pixels[1]"),
     ] {
         let why = parse(&SMALL.replace(wrong, right)).unwrap_err();
@@ -66,7 +74,13 @@ fn what_is_wrong_with_a_drape_is_told_with_its_place() {
 
 #[test]
 fn a_scenario_with_a_drape_survives_being_written_and_read() {
-    for text in [SMALL, dyelapse::scenario::bundled().find(|b| b.name == "pulled_silk").unwrap().text] {
+    for text in [
+        SMALL,
+        dyelapse::scenario::bundled()
+            .find(|b| b.name == "pulled_silk")
+            .unwrap()
+            .text,
+    ] {
         let scenario = parse(text).unwrap().scenario;
         let written = ron::to_string(&scenario).unwrap();
         let read: dyelapse::scenario::Scenario = ron::from_str(&written).unwrap();
@@ -77,11 +91,10 @@ fn a_scenario_with_a_drape_survives_being_written_and_read() {
 #[test]
 fn an_unknown_drape_is_bad_input_and_the_nearest_is_named() {
     let here = folder();
-    let refused = dyelapse(&here)
-        .args(["export", "one_drop", "--drape", "tabelcloth"])
-        .assert()
-        .code(2);
-    assert!(said(&refused).contains("did you mean `tablecloth`"));
+    let mut export = dyelapse(&here);
+    let (code, said) = said(export.args(["export", "one_drop", "--drape", "tabelcloth"]));
+    assert_eq!(code, 2);
+    assert!(said.contains("did you mean `tablecloth`"), "{said}");
     assert!(!here.path().join("one_drop.glb").exists());
 }
 
@@ -89,7 +102,10 @@ fn an_unknown_drape_is_bad_input_and_the_nearest_is_named() {
 fn the_exported_cloth_is_whole_gltf_with_both_sides() {
     let here = folder();
     fs::write(here.path().join("small.ron"), SMALL).unwrap();
-    dyelapse(&here).args(["export", "small.ron"]).assert().success();
+    dyelapse(&here)
+        .args(["export", "small.ron"])
+        .assert()
+        .success();
     let bytes = fs::read(here.path().join("small.glb")).unwrap();
     // Reading it checks it against the standard.
     let gltf = gltf::Gltf::from_slice(&bytes).unwrap();
@@ -111,21 +127,32 @@ fn the_exported_cloth_is_whole_gltf_with_both_sides() {
         assert!(normals.iter().all(|n| (length(*n) - 1.0).abs() < 1e-4));
         assert!(uv.iter().flatten().all(|c| (0.0..=1.0).contains(c)));
         // 30 cm of cloth over a ball: in metres, above the floor.
-        assert!(positions.iter().all(|p| p[1] > 0.0 && p[1] < 0.31 && p[0].abs() < 0.16));
+        assert!(
+            positions
+                .iter()
+                .all(|p| p[1] > 0.0 && p[1] < 0.31 && p[0].abs() < 0.16)
+        );
         let mut areas = 0.0;
         for t in indices.chunks_exact(3) {
             let [a, b, c] = [t[0], t[1], t[2]].map(|i| positions[i as usize]);
-            let (ab, ac) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+            let (ab, ac) = (
+                [0, 1, 2].map(|i| b[i] - a[i]),
+                [0, 1, 2].map(|i| c[i] - a[i]),
+            );
             let cross = [
                 ab[1] * ac[2] - ab[2] * ac[1],
                 ab[2] * ac[0] - ab[0] * ac[2],
                 ab[0] * ac[1] - ab[1] * ac[0],
             ];
             let normal = normals[t[0] as usize];
-            assert!((0..3).map(|i| cross[i] * normal[i]).sum::<f32>() > 0.0, "turned inside out");
+            assert!(
+                (0..3).map(|i| cross[i] * normal[i]).sum::<f32>() > 0.0,
+                "turned inside out"
+            );
             areas += 0.5 * length(cross);
         }
-        assert!((areas - 0.09).abs() < 0.005, "{areas} m² of 0.09");
+        // Yarns do not stretch, so cloth that shears over a ball only loses area.
+        assert!((0.06..0.092).contains(&areas), "{areas} m² of 0.09");
         let texture = side.material().pbr_metallic_roughness();
         let texture = texture.base_color_texture().unwrap().texture();
         assert!(side.material().normal_texture().is_some());
@@ -160,14 +187,14 @@ mod drawn {
         let here = folder();
         fs::write(here.path().join("small.ron"), SMALL).unwrap();
         let nowhere = here.path().join("no_driver.json");
-        let refused = dyelapse(&here)
+        let mut record = dyelapse(&here);
+        record
             .env("VK_ICD_FILENAMES", &nowhere)
             .env("VK_DRIVER_FILES", &nowhere)
             .env("WGPU_BACKEND", "vulkan")
-            .args(["record", "small.ron", "--view", "draped", "--out", "r"])
-            .assert()
-            .code(2);
-        let said = said(&refused);
+            .args(["record", "small.ron", "--view", "draped", "--out", "r"]);
+        let (code, said) = said(&mut record);
+        assert_eq!(code, 2);
         assert!(said.contains("mesa-vulkan-drivers"), "{said}");
         assert!(!here.path().join("r").exists());
     }
@@ -181,7 +208,9 @@ mod drawn {
         let file = format!("{name}.ron");
         fs::write(here.path().join(&file), text).unwrap();
         dyelapse(here)
-            .args(["record", &file, "--view", "draped", "--out", name, "--quiet"])
+            .args([
+                "record", &file, "--view", "draped", "--out", name, "--quiet",
+            ])
             .assert()
             .success();
         Some(())
@@ -209,10 +238,11 @@ mod drawn {
         }
         recorded(&here, "two", SMALL).unwrap();
         let again = contents(&here.path().join("two"));
-        let name = |files: &[(String, Vec<u8>)], i: usize| files[i].0.clone();
-        for i in 0..files.len() {
-            assert_eq!(name(&files, i), name(&again, i));
-            assert!(files[i].1 == again[i].1, "{} differs", files[i].0);
+        assert_eq!(files.len(), again.len());
+        for (name, bytes) in &files {
+            let same = again.get(name).is_some_and(|again| again == bytes);
+            // The manifest and the copy of the scenario differ in nothing either.
+            assert!(same, "{name} differs");
         }
     }
 

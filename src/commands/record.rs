@@ -10,8 +10,8 @@ use std::time::Instant;
 use super::progress::Progress;
 use super::{BAD_INPUT, INTERRUPTED, complain, failed, say};
 use crate::cli::{self, Record};
-use dyelapse::record::{Options, View, default_folder, record};
 use dyelapse::drape::scenes;
+use dyelapse::record::{Options, View, default_folder, record};
 use dyelapse::scenario::check::Checker;
 use dyelapse::scenario::{Draping, Experiment, unknown_drape};
 

@@ -127,7 +127,11 @@ mod tests {
     fn subject() -> Subject {
         let place = |i: usize| {
             let corner = |bit: usize| (i >> bit & 1) as f64;
-            DVec3::new(1.0 + corner(0), 2.0 + 0.6 * corner(1), 3.0 + 0.3 * corner(2))
+            DVec3::new(
+                1.0 + corner(0),
+                2.0 + 0.6 * corner(1),
+                3.0 + 0.3 * corner(2),
+            )
         };
         Subject::new((0..8).map(place).collect())
     }
@@ -153,7 +157,10 @@ mod tests {
     fn outermost(camera: Transform, view: &ViewSpec) -> f32 {
         let opening = Opening::new(view.field_of_view, view.pixels);
         let out = subject().places.into_iter().map(|place| {
-            let seen = camera.to_matrix().inverse().transform_point3(place.as_vec3());
+            let seen = camera
+                .to_matrix()
+                .inverse()
+                .transform_point3(place.as_vec3());
             assert!(seen.z < 0.0, "behind the camera");
             let (x, y) = (seen.x / -seen.z, seen.y / -seen.z);
             (x.abs() / opening.across as f32).max(y.abs() / opening.up as f32)
@@ -183,7 +190,11 @@ mod tests {
         };
         let view = view(camera, (800, 600));
         let way = Way::new(&view, &subject());
-        let distance = |share| way.at(share).translation.distance(subject().centre.as_vec3());
+        let distance = |share| {
+            way.at(share)
+                .translation
+                .distance(subject().centre.as_vec3())
+        };
         for share in [0.0, 0.21, 0.5, 0.83, 1.0] {
             assert!(outermost(way.at(share), &view) < 0.95);
             assert!((distance(share) - distance(0.0)).abs() < 1e-4);
@@ -210,7 +221,11 @@ mod tests {
             at_m: None,
         };
         let way = Way::new(&view(camera, (800, 600)), &subject());
-        let distance = |share| way.at(share).translation.distance(subject().centre.as_vec3());
+        let distance = |share| {
+            way.at(share)
+                .translation
+                .distance(subject().centre.as_vec3())
+        };
         assert!((distance(0.0) / distance(1.0) - 2.0).abs() < 1e-4);
         assert!((distance(0.5) / distance(1.0) - 1.5).abs() < 1e-4);
     }

@@ -145,7 +145,11 @@ impl Fine {
                 .iter()
                 .map(|uv| DVec2::new(1.0 - uv.x, uv.y))
                 .collect(),
-            triangles: self.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect(),
+            triangles: self
+                .triangles
+                .iter()
+                .map(|[a, b, c]| [*a, *c, *b])
+                .collect(),
         }
     }
 }

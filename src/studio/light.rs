@@ -8,7 +8,9 @@
 use std::f64::consts::TAU;
 
 use bevy::core_pipeline::tonemapping::Tonemapping;
-use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap, EnvironmentMapLight, NotShadowCaster};
+use bevy::light::{
+    CascadeShadowConfigBuilder, DirectionalLightShadowMap, EnvironmentMapLight, NotShadowCaster,
+};
 use bevy::math::{DVec2, DVec3};
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
@@ -144,7 +146,11 @@ fn ground(world: &mut World, view: &ViewSpec, subject: &Subject) {
     let height = world
         .get_resource::<FloorHeight>()
         .map_or(0.0, |floor| floor.0);
-    let bowl = bowl(DVec2::new(subject.centre.x, subject.centre.z), height, subject.radius);
+    let bowl = bowl(
+        DVec2::new(subject.centre.x, subject.centre.z),
+        height,
+        subject.radius,
+    );
     let mesh = world.resource_mut::<Assets<Mesh>>().add(bowl);
     let material = world
         .resource_mut::<Assets<StandardMaterial>>()
@@ -154,7 +160,12 @@ fn ground(world: &mut World, view: &ViewSpec, subject: &Subject) {
             reflectance: 0.1,
             ..default()
         });
-    world.spawn((Ground, Mesh3d(mesh), MeshMaterial3d(material), NotShadowCaster));
+    world.spawn((
+        Ground,
+        Mesh3d(mesh),
+        MeshMaterial3d(material),
+        NotShadowCaster,
+    ));
 }
 
 /// A floor that rises into a wall all around.

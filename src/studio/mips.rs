@@ -31,19 +31,21 @@ pub fn chain(rgb: &[u8], width: usize, height: usize, kind: Kind) -> Vec<u8> {
         let (hw, hh) = ((w / 2).max(1), (h / 2).max(1));
         let mut half = vec![0; hw * hh * 4];
         let level = &all[from..from + w * h * 4];
-        half.par_chunks_mut(hw * 4).enumerate().for_each(|(y, row)| {
-            for (x, pixel) in row.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-                let at = |dx: usize, dy: usize| {
-                    let (x, y) = ((2 * x + dx).min(w - 1), (2 * y + dy).min(h - 1));
-                    &level[4 * (y * w + x)..][..3]
-                };
-                let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-                *pixel = match kind {
-                    Kind::Colour => mean_colour(four, &light),
-                    Kind::Normal => mean_normal(four),
-                };
-            }
-        });
+        half.par_chunks_mut(hw * 4)
+            .enumerate()
+            .for_each(|(y, row)| {
+                for (x, pixel) in row.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                    let at = |dx: usize, dy: usize| {
+                        let (x, y) = ((2 * x + dx).min(w - 1), (2 * y + dy).min(h - 1));
+                        &level[4 * (y * w + x)..][..3]
+                    };
+                    let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+                    *pixel = match kind {
+                        Kind::Colour => mean_colour(four, &light),
+                        Kind::Normal => mean_normal(four),
+                    };
+                }
+            });
         from = all.len();
         all.extend(half);
         (w, h) = (hw, hh);
@@ -93,7 +95,13 @@ mod tests {
         let pixels = 13 * 6 + 6 * 3 + 3 + 1;
         assert_eq!(bytes.len(), 4 * pixels);
         assert_eq!(levels(13, 6), 4);
-        assert!(bytes.as_chunks::<4>().0.iter().all(|p| *p == [90, 90, 90, 255]));
+        assert!(
+            bytes
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .all(|p| *p == [90, 90, 90, 255])
+        );
     }
 
     #[test]

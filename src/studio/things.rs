@@ -105,9 +105,19 @@ fn stand(world: &mut World, top: Vec3, floor: f64, radius: f32, foot: f32) {
         return;
     }
     let middle = Vec3::new(top.x, top.y - 0.5 * height, top.z);
-    put(world, Cylinder::new(radius, height), WOOD, Transform::from_translation(middle));
+    put(
+        world,
+        Cylinder::new(radius, height),
+        WOOD,
+        Transform::from_translation(middle),
+    );
     let base = Vec3::new(top.x, floor as f32 + 0.0125, top.z);
-    put(world, Cylinder::new(foot, 0.025), WOOD, Transform::from_translation(base));
+    put(
+        world,
+        Cylinder::new(foot, 0.025),
+        WOOD,
+        Transform::from_translation(base),
+    );
 }
 
 /// Four legs.
@@ -117,10 +127,18 @@ fn legs(world: &mut World, top: Vec3, floor: f64, (width, depth): (f64, f64)) {
         return;
     }
     let side = (0.05 * width.min(depth)).clamp(0.01, 0.06) as f32;
-    let (x, z) = (0.5 * width as f32 - 1.5 * side, 0.5 * depth as f32 - 1.5 * side);
+    let (x, z) = (
+        0.5 * width as f32 - 1.5 * side,
+        0.5 * depth as f32 - 1.5 * side,
+    );
     for (x, z) in [(x, z), (-x, z), (x, -z), (-x, -z)] {
         let middle = Vec3::new(top.x + x, top.y - 0.5 * height, top.z + z);
-        put(world, Cuboid::new(side, height, side), WOOD, Transform::from_translation(middle));
+        put(
+            world,
+            Cuboid::new(side, height, side),
+            WOOD,
+            Transform::from_translation(middle),
+        );
     }
 }
 
@@ -151,7 +169,12 @@ fn pegs(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
     let middle = 0.5 * (*first + *last) + Vec3::Y * 0.016;
     let turned = Quat::from_rotation_arc(Vec3::Y, along.normalize());
     let line = Cylinder::new(0.0022, along.length() * 6.0);
-    put(world, line, PAINT, Transform::from_translation(middle).with_rotation(turned));
+    put(
+        world,
+        line,
+        PAINT,
+        Transform::from_translation(middle).with_rotation(turned),
+    );
 }
 
 /// Faces that meet at a smaller angle than this (as its cosine) look as one round face.
