@@ -59,6 +59,8 @@ pub mod schedule;
 pub mod studio;
 pub mod supply;
 pub mod texture;
+#[cfg(feature = "viewer")]
+pub mod watch;
 
 use std::sync::Arc;
 
