@@ -220,8 +220,14 @@ impl CreaseLink {
         let along = fold.b - fold.a;
         let r = along.length();
         let n = along.normalize_or_zero();
-        let (pull, push) = (stretch(r, self.rest, self.k), bend(r, self.rest, self.k_b, self.c_b));
-        let Pull { force: f, stiffness } = Pull {
+        let (pull, push) = (
+            stretch(r, self.rest, self.k),
+            bend(r, self.rest, self.k_b, self.c_b),
+        );
+        let Pull {
+            force: f,
+            stiffness,
+        } = Pull {
             force: pull.force + push.force,
             stiffness: pull.stiffness + push.stiffness,
         };

@@ -313,7 +313,9 @@ impl Drape {
         }
         if meshes {
             let colliders = &self.colliders;
-            pairs.extend(with_colliders(topology, &self.tree, colliders, motion, margin));
+            pairs.extend(with_colliders(
+                topology, &self.tree, colliders, motion, margin,
+            ));
         }
         pairs
     }
@@ -327,8 +329,7 @@ impl Drape {
             if !pin.holds(self.time) {
                 continue;
             }
-            let taken =
-                taken.get_or_insert_with(|| pin.particles.iter().map(|i| x[*i]).collect());
+            let taken = taken.get_or_insert_with(|| pin.particles.iter().map(|i| x[*i]).collect());
             let moved = pin.moved(self.time + step);
             for (i, from) in pin.particles.iter().zip(taken) {
                 led[*i] = Some(*from + moved - x[*i]);
@@ -450,7 +451,14 @@ impl Drape {
             let i = touch.particle as usize;
             changed[i] = true;
             let end = state.x[i] + moves[i];
-            let anchor = anchored(*touch, moves[i], end, 1.0 / mobility[i], state.anchors[i], rule);
+            let anchor = anchored(
+                *touch,
+                moves[i],
+                end,
+                1.0 / mobility[i],
+                state.anchors[i],
+                rule,
+            );
             if let Some(anchor) = anchor
                 && anchors[i].is_none_or(|other: Anchor| other.pressed < anchor.pressed)
             {
@@ -505,7 +513,14 @@ fn propose_explicit(given: &Given) -> Proposed {
     for (i, lead) in given.lead.iter().enumerate() {
         let held = given.mobility[i] <= 0.0;
         x.set_particle(i, given.state.x[i]);
-        v.set_particle(i, if held { *lead / given.step } else { given.state.v[i] });
+        v.set_particle(
+            i,
+            if held {
+                *lead / given.step
+            } else {
+                given.state.v[i]
+            },
+        );
     }
     let mut cloth = Explicit::new(x, v);
     let pulls = Pulls {

@@ -57,7 +57,8 @@ impl Scheme {
         let h = given.step;
         let same = |last: f64| (last - h).abs() < 1e-9 * h;
         // The first step has no past, nor has one of another length.
-        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same) {
+        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same)
+        {
             Scheme {
                 alpha: 4.0 * h * h / 9.0,
                 beta: 2.0 * h / 3.0,
@@ -130,7 +131,9 @@ impl Implicit {
         let [last, before] = &self.guesses;
         self.solver.begin(&system, [last, before], &mut self.u);
         let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);
-        let solved = self.solver.solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
+        let solved = self
+            .solver
+            .solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
         self.guesses.swap(0, 1);
         self.guesses[0].clone_from(&self.u);
         let nx = sheet.links.particles.0;
@@ -162,7 +165,8 @@ impl Implicit {
             *single = *double as f32;
         }
         let coefficients = Some((scheme.alpha, scheme.beta));
-        self.response.compute(&sheet.links, &self.x, &self.v, coefficients);
+        self.response
+            .compute(&sheet.links, &self.x, &self.v, coefficients);
         self.pull.all_mut().fill(0.0);
         self.response.add_forces(&mut self.pull);
         for crease in &sheet.creases {

@@ -110,7 +110,8 @@ impl Material {
             return Ok(());
         };
         at.field("weight").within(spec.weight, 0.1..=1e5)?;
-        at.field("thickness_mm").within(spec.thickness_mm, 0.0..=100.0)?;
+        at.field("thickness_mm")
+            .within(spec.thickness_mm, 0.0..=100.0)?;
         for (i, stretch) in [spec.stretch.0, spec.stretch.1].into_iter().enumerate() {
             at.field("stretch").item(i).within(stretch, 0.01..=1e12)?;
         }

@@ -62,7 +62,10 @@ pub fn filter(
     let proposed: Vec<DVec3> = moves.to_vec();
     let mut base = proposed;
     let mut refresh = |moves: &[DVec3], base: &mut Vec<DVec3>, pairs: &mut Vec<Pair>| {
-        let left = moves.iter().zip(base.iter()).any(|(a, b)| (*a - *b).length_squared() > slack * slack);
+        let left = moves
+            .iter()
+            .zip(base.iter())
+            .any(|(a, b)| (*a - *b).length_squared() > slack * slack);
         if left {
             *pairs = again(moves);
             base.clear();
@@ -145,7 +148,11 @@ impl Bodies<'_> {
 fn touching(bodies: Bodies, pairs: &[Pair], moves: &[DVec3]) -> Vec<(f64, Pair)> {
     let meet = |pair: &Pair| {
         let corners = pair.corners().map(|i| i as usize);
-        let time = time_of_impact(*pair, corners.map(|i| bodies.from[i]), corners.map(|i| moves[i]));
+        let time = time_of_impact(
+            *pair,
+            corners.map(|i| bodies.from[i]),
+            corners.map(|i| moves[i]),
+        );
         time.map(|time| (time, *pair))
     };
     let found: Vec<Vec<(f64, Pair)>> = pairs
