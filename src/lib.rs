@@ -54,6 +54,7 @@ pub mod photo;
 pub mod record;
 pub mod scenario;
 pub mod schedule;
+pub mod session;
 pub mod supply;
 pub mod texture;
 

@@ -1,6 +1,11 @@
-//! What lies beneath the window: strokes, snapshots, the timeline, undo, saving, sections, overlays.
 
 mod common;
 
+#[path = "session/cloths.rs"]
+mod cloths;
+#[path = "session/snapshots.rs"]
+mod snapshots;
 #[path = "session/strokes.rs"]
 mod strokes;
+#[path = "session/timelines.rs"]
+mod timelines;

@@ -72,27 +72,27 @@ impl Plugin for BatikPlugin {
 /// A batik in the making.
 #[derive(Resource)]
 pub struct Batik {
-    recipe: Recipe,
+    pub(super) recipe: Recipe,
     /// The actions that have begun; one more once the last has ended.
-    begun: usize,
-    wax: Option<Arc<Wax>>,
+    pub(super) begun: usize,
+    pub(super) wax: Option<Arc<Wax>>,
     /// The wax as it is seen.
-    layer: Option<WaxLayer>,
+    pub(super) layer: Option<Arc<WaxLayer>>,
     /// What is fixed of earlier dyes, `(layer, y, x)`.
-    fixed: Vec<Vec<f32>>,
-    mixture: Mixture,
+    pub(super) fixed: Vec<Arc<Vec<f32>>>,
+    pub(super) mixture: Mixture,
     /// The amount that the mixture takes for full, under the solvers of paper D.
-    full: f64,
+    pub(super) full: f64,
     /// What cells exchange in sweeps; none where the solvers of paper D move the dye.
-    exchange: Option<Exchange>,
+    pub(super) exchange: Option<Exchange>,
     /// The bath that the cloth hangs in.
-    sweeps: Option<PixelDiffusing>,
+    pub(super) sweeps: Option<PixelDiffusing>,
     /// What of its account is in the ledger.
-    booked: f64,
-    show: BatikShow,
-    show_wax: bool,
-    side: Side,
-    seed: u64,
+    pub(super) booked: f64,
+    pub(super) show: BatikShow,
+    pub(super) show_wax: bool,
+    pub(super) side: Side,
+    pub(super) seed: u64,
 }
 
 /// A map of the cloth as it is seen from one side.
@@ -136,7 +136,7 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
 }
 
 /// The dyes of a recipe on its cloth; `full` is how much of one a cell of paper D holds.
-fn mixture(spec: &BatikSpec, full: f64) -> Mixture {
+pub(super) fn mixture(spec: &BatikSpec, full: f64) -> Mixture {
     let undyed = to_rgb(spec.cloth);
     let dyestuff = |step: &BatikStep| match step {
         BatikStep::Dye { colour, bath, .. } => {
@@ -184,6 +184,13 @@ impl Batik {
         baths.into_iter().flatten()
     }
 
+    /// The wax that action `i` laid on, as it is seen.
+    pub(super) fn layer_of(&self, wax: &Wax, i: usize) -> Arc<WaxLayer> {
+        let seed = self.seed.wrapping_add(i as u64);
+        let seen = as_seen(&wax.drawing, self.side);
+        Arc::new(WaxLayer::new(&seen, WaxLook::default(), seed))
+    }
+
     /// Whether something is to begin or to end at a step.
     fn is_due(&self, step: u64) -> bool {
         let begins = self.recipe.begins.get(self.begun);
@@ -201,10 +208,9 @@ impl Batik {
             match self.recipe.actions.get(self.begun) {
                 None => {}
                 Some(Action::Wax(wax)) => {
-                    let seed = self.seed.wrapping_add(self.begun as u64);
-                    let seen = as_seen(&wax.drawing, self.side);
-                    self.layer = Some(WaxLayer::new(&seen, WaxLook::default(), seed));
-                    self.wax = Some(wax.clone());
+                    let wax = wax.clone();
+                    self.layer = Some(self.layer_of(&wax, self.begun));
+                    self.wax = Some(wax);
                 }
                 Some(Action::Boil) => {
                     self.wax = None;
@@ -247,7 +253,7 @@ impl Batik {
         vat.free.wash();
         vat.bound.amount.fill(0.0);
         vat.bound.carry.fill(0.0);
-        self.fixed.push(fixed);
+        self.fixed.push(Arc::new(fixed));
     }
 
     /// Books what sweeps have supplied, and made or lost by changing cells in place, since the last

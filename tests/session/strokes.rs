@@ -58,7 +58,8 @@ fn a_stroke_is_what_its_distance_says_and_reaches_no_farther() {
                 let at = |side: fn((f64, f64)) -> f64| {
                     side(part[0]) + t * (side(part[1]) - side(part[0]))
                 };
-                (at(|p| p.0) - x).hypot(at(|p| p.1) - y)
+                let (dx, dy) = (at(|p| p.0) - x, at(|p| p.1) - y);
+                (dx * dx + dy * dy).sqrt()
             })
         });
         parts.fold(f64::INFINITY, f64::min)
