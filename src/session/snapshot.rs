@@ -118,6 +118,11 @@ impl Snapshot {
         self.depends
     }
 
+    /// The same, of the accelerated solver alone: whatever supply does at this moment.
+    pub fn looks_ahead_to(&self) -> u64 {
+        self.leap.as_ref().map_or(0, KeptLeap::depends)
+    }
+
     /// How much had to be computed up to this moment: evaluations of the rate, scans, or steps.
     pub fn effort(&self) -> u64 {
         let evaluations = self.leap.as_ref().map(KeptLeap::evaluations);

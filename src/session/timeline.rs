@@ -91,7 +91,9 @@ impl Timeline {
         let (step, now) = (world.resource::<ProcessClock>().step, effort(world));
         let at = self.kept.partition_point(|kept| kept.clock().step < step);
         let after = self.kept.get(at);
-        if after.is_some_and(|after| after.clock().step == step) {
+        // The first time counts: supply may have acted here since.
+        let is_here = |kept: &Snapshot| kept.clock().step == step;
+        if after.is_some_and(is_here) || self.last.as_ref().is_some_and(is_here) {
             return;
         }
         let before = at.checked_sub(1).map(|i| self.kept[i].effort());
