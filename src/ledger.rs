@@ -43,13 +43,6 @@ impl Ledger {
         }
     }
 
-    /// Books dye that entered and dye that left, apart. Either may be less than nothing where it puts
-    /// right what was booked before.
-    pub fn book_apart(&mut self, entered: f64, left: f64) {
-        self.supplied += entered;
-        self.removed += left;
-    }
-
     /// What the accounts miss: supplied − (free + bound + removed). Nothing but rounding.
     pub fn imbalance(&self) -> f64 {
         self.supplied - (self.free + self.bound + self.removed)

@@ -56,6 +56,7 @@ pub mod photo;
 pub mod record;
 pub mod scenario;
 pub mod schedule;
+pub mod session;
 pub mod studio;
 pub mod supply;
 pub mod texture;

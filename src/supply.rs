@@ -61,8 +61,30 @@ pub struct Supplies {
     /// What is kept now, in the order of the cells, and the step until which that holds and baths stay.
     kept: Vec<Cell>,
     kept_until: u64,
+    /// The step at which that was found; none before the first.
+    kept_from: Option<u64>,
     /// What the baths do now, once someone has asked.
     soaked: Option<Vec<Soaked>>,
+}
+
+/// How far supply has come: what else it keeps follows from the scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SupplyProgress {
+    /// Events that are done.
+    done: usize,
+    /// The step at which was found what is kept.
+    kept_from: Option<u64>,
+}
+
+impl SupplyProgress {
+    /// Whether supply has acted already at `step`, or later.
+    pub fn has_acted(&self, supplies: &Supplies, step: u64) -> bool {
+        let last = self
+            .done
+            .checked_sub(1)
+            .and_then(|i| supplies.events.get(i));
+        self.kept_from.is_some_and(|from| from >= step) || last.is_some_and(|last| last.at >= step)
+    }
 }
 
 /// A cell's index in a field, and the concentration that is brought to it.
@@ -246,14 +268,38 @@ impl Supplies {
             return;
         }
         self.kept = self.kept_at(step).into_owned();
+        self.kept_from = Some(step);
         self.soaked = None;
+        self.kept_until = self.stays_until(step);
+    }
+
+    /// The next step after `step` at which a hold or a bath begins or ends.
+    fn stays_until(&self, step: u64) -> u64 {
         let holds = self.holds.iter().flat_map(|hold| [hold.from, hold.until]);
         let baths = self.baths.iter().flat_map(|bath| [bath.from, bath.until]);
-        self.kept_until = holds
-            .chain(baths)
-            .filter(|change| *change > step)
-            .min()
-            .unwrap_or(u64::MAX);
+        let changes = holds.chain(baths).filter(|change| *change > step);
+        changes.min().unwrap_or(u64::MAX)
+    }
+
+    /// How far supply has come.
+    pub fn progress(&self) -> SupplyProgress {
+        SupplyProgress {
+            done: self.done,
+            kept_from: self.kept_from,
+        }
+    }
+
+    /// Goes on from where supply had come once.
+    pub fn resume(&mut self, progress: SupplyProgress) {
+        self.done = progress.done.min(self.events.len());
+        self.kept_until = 0;
+        self.kept_from = progress.kept_from;
+        self.soaked = None;
+        self.kept = Vec::new();
+        if let Some(from) = progress.kept_from {
+            self.kept = self.kept_at(from).into_owned();
+            self.kept_until = self.stays_until(from);
+        }
     }
 
     /// Adds what the holds do at their ends.

@@ -73,6 +73,9 @@ fn pattern() -> impl Strategy<Value = String> {
         (length(), 1..13_u32).prop_map(|(g, o)| format!("Noise(grain: {g}, octaves: {o})")),
         (length(), 1..9_u32, share())
             .prop_map(|(r, n, o)| format!("Seikaiha(radius: {r}, arcs: {n}, open: {o})")),
+        (length(), share(), share()).prop_map(|(r, h, x)| {
+            format!("Strokes([(radius: {r}, hardness: {h}, path: [({x}, 0.2), (0.5, {x})])])")
+        }),
         Just("Strength(of: Everywhere, by: 0.99)".to_owned()),
         Just("Disc(diameter: Cells(9), centre: (0.1, 0.9))".to_owned()),
     ];

@@ -25,6 +25,7 @@ pub mod crossings;
 pub mod distance;
 pub mod drawing;
 pub mod ellipse;
+pub(crate) mod keep;
 pub mod mixing;
 mod noise;
 pub mod permeation;

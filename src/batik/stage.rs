@@ -72,28 +72,28 @@ impl Plugin for BatikPlugin {
 /// A batik in the making.
 #[derive(Resource)]
 pub struct Batik {
-    recipe: Recipe,
+    pub(super) recipe: Recipe,
     /// The actions that have begun; one more once the last has ended.
-    begun: usize,
-    wax: Option<Arc<Wax>>,
+    pub(super) begun: usize,
+    pub(super) wax: Option<Arc<Wax>>,
+    /// The action that laid the wax on.
+    pub(super) waxed_by: usize,
     /// The wax as it is seen from either side, face first; made when a side is first looked at.
-    layers: [Option<WaxLayer>; 2],
+    pub(super) layers: [Option<WaxLayer>; 2],
     /// What is fixed of earlier dyes, `(layer, y, x)`.
-    fixed: Vec<Vec<f32>>,
-    mixture: Mixture,
+    pub(super) fixed: Vec<Arc<Vec<f32>>>,
+    pub(super) mixture: Mixture,
     /// The amount that the mixture takes for full, under the solvers of paper D.
-    full: f64,
+    pub(super) full: f64,
     /// What cells exchange in sweeps; none where the solvers of paper D move the dye.
-    exchange: Option<Exchange>,
+    pub(super) exchange: Option<Exchange>,
     /// The bath that the cloth hangs in.
-    sweeps: Option<PixelDiffusing>,
+    pub(super) sweeps: Option<PixelDiffusing>,
     /// What of its account is in the ledger.
-    booked: f64,
-    show: BatikShow,
-    show_wax: bool,
-    seed: u64,
-    /// The seed of the wax that is on the cloth.
-    wax_seed: u64,
+    pub(super) booked: f64,
+    pub(super) show: BatikShow,
+    pub(super) show_wax: bool,
+    pub(super) seed: u64,
 }
 
 /// A map of the cloth as it is seen from one side.
@@ -122,6 +122,7 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         recipe,
         begun: 0,
         wax: None,
+        waxed_by: 0,
         layers: [None, None],
         fixed: Vec::new(),
         mixture: mixture(spec, darkest_at(scenario)),
@@ -132,12 +133,11 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         show: spec.show,
         show_wax: spec.show_wax,
         seed: scenario.seed,
-        wax_seed: scenario.seed,
     });
 }
 
 /// The dyes of a recipe on its cloth; `full` is how much of one a cell of paper D holds.
-fn mixture(spec: &BatikSpec, full: f64) -> Mixture {
+pub(super) fn mixture(spec: &BatikSpec, full: f64) -> Mixture {
     let undyed = to_rgb(spec.cloth);
     let dyestuff = |step: &BatikStep| match step {
         BatikStep::Dye { colour, bath, .. } => {
@@ -185,6 +185,13 @@ impl Batik {
         baths.into_iter().flatten()
     }
 
+    /// Lays wax on, with the action that does so, or takes all off.
+    pub(super) fn lay(&mut self, wax: Option<(usize, Arc<Wax>)>) {
+        self.layers = [None, None];
+        self.waxed_by = wax.as_ref().map_or(0, |(by, _)| *by);
+        self.wax = wax.map(|(_, wax)| wax);
+    }
+
     /// Whether something is to begin or to end at a step.
     fn is_due(&self, step: u64) -> bool {
         let begins = self.recipe.begins.get(self.begun);
@@ -202,13 +209,11 @@ impl Batik {
             match self.recipe.actions.get(self.begun) {
                 None => {}
                 Some(Action::Wax(wax)) => {
-                    self.wax_seed = self.seed.wrapping_add(self.begun as u64);
-                    self.layers = [None, None];
-                    self.wax = Some(wax.clone());
+                    let wax = wax.clone();
+                    self.lay(Some((self.begun, wax)));
                 }
                 Some(Action::Boil) => {
-                    self.wax = None;
-                    self.layers = [None, None];
+                    self.lay(None);
                 }
                 Some(Action::Dye { bath, .. }) => {
                     let (nx, ny) = (vat.cloth.grid.nx, vat.cloth.grid.ny);
@@ -247,7 +252,7 @@ impl Batik {
         vat.free.wash();
         vat.bound.amount.fill(0.0);
         vat.bound.carry.fill(0.0);
-        self.fixed.push(fixed);
+        self.fixed.push(Arc::new(fixed));
     }
 
     /// Books what sweeps have supplied, and made or lost by changing cells in place, since the last
@@ -363,7 +368,8 @@ impl Batik {
         };
         let layer = self.layers[side as usize].get_or_insert_with(|| {
             let seen = as_seen(&wax.drawing, side);
-            WaxLayer::new(&seen, WaxLook::default(), self.wax_seed)
+            let seed = self.seed.wrapping_add(self.waxed_by as u64);
+            WaxLayer::new(&seen, WaxLook::default(), seed)
         });
         let Picture { width, height, rgb } = picture;
         let pixels = rgb.as_chunks::<3>().0;

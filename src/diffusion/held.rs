@@ -80,6 +80,11 @@ impl Held {
         }
     }
 
+    /// All kept cells.
+    pub fn len(&self) -> usize {
+        self.rim.len() + self.deep.len()
+    }
+
     /// How many of the rim lie above row `y`.
     pub fn above(&self, y: usize) -> usize {
         self.above[y]

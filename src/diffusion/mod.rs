@@ -13,10 +13,12 @@ mod peer;
 mod steps;
 mod tiles;
 
+use bevy::ecs::change_detection::Tick;
+use bevy::ecs::system::SystemChangeTick;
 use bevy::prelude::*;
 use rayon::prelude::*;
 
-pub use accelerated::{Chemistry, Leap};
+pub use accelerated::{Chemistry, KeptLeap, Leap};
 pub(crate) use explicit::add;
 pub use explicit::step;
 pub use faces::Faces;
@@ -302,6 +304,17 @@ fn prepare(
     commands.insert_resource(FreeDye::clean(cloth.grid, solver));
 }
 
+/// Whether something was changed after a solver last did its work. Unlike Bevy's own `is_changed` this
+/// does not ask when a system ran, so a state that is put back is no change.
+pub(crate) fn changed_since(
+    what: &impl DetectChanges,
+    solver: &impl DetectChanges,
+    now: Tick,
+) -> bool {
+    what.last_changed()
+        .is_newer_than(solver.last_changed(), now)
+}
+
 /// One step of the explicit solver.
 fn one_step(
     mut dye: ResMut<FreeDye>,
@@ -328,9 +341,13 @@ fn leap(
     supplies: Res<Supplies>,
     mut ledger: ResMut<Ledger>,
     experiment: Res<TheExperiment>,
+    ticks: SystemChangeTick,
 ) {
     // Whoever else changed the dye (supply, a stage of one's own) began a new process.
-    let changed = dye.is_changed() || bound.is_changed() || supplies.is_changed();
+    let now = ticks.this_run();
+    let changed = changed_since(&dye, &leap, now)
+        || changed_since(&bound, &leap, now)
+        || changed_since(&supplies, &leap, now);
     if changed || !leap.covers(clock.step) {
         let kept = supplies.kept_at(clock.step);
         let soaked = supplies.soaked_at(clock.step, leap.splits());

@@ -4,6 +4,7 @@
 //! but diffusion happens between them and supply keeps what it keeps: so the rows of many
 //! steps can follow each other through the cache ([`tiles`]).
 
+use bevy::ecs::system::SystemChangeTick;
 use bevy::prelude::*;
 use pulp::Simd;
 
@@ -12,7 +13,7 @@ use super::kernel::{At, Take};
 use super::lanes::{Cells, Lanes, Ways};
 use super::passage::{Fick, Law, Passage};
 use super::tiles::{self, Level, Task, Work, flow};
-use super::{Faces, FreeDye};
+use super::{Faces, FreeDye, changed_since};
 use crate::cloth::Cloth;
 use crate::ledger::Ledger;
 use crate::schedule::ProcessClock;
@@ -133,17 +134,21 @@ pub(super) fn many_steps(
     mut dye: ResMut<FreeDye>,
     supplies: Res<Supplies>,
     mut ledger: ResMut<Ledger>,
+    ticks: SystemChangeTick,
 ) {
+    // Where a stage of one's own changes the dye, it must see every step.
+    let disturbed = changed_since(&dye, &steps, ticks.this_run());
     if supplies.is_changed() {
         let kept = supplies.kept_at(clock.step);
         steps.keep(kept.iter().map(|(i, _)| *i as usize));
     }
-    // Where a stage of one's own changes the dye, it must see every step.
-    clock.stride = if dye.is_changed() {
+    clock.stride = if disturbed {
         1
     } else {
         let until = clock.until.min(supplies.next_change(clock.step));
-        (until - clock.step).min(LONGEST)
+        // Runs end at the same steps wherever they began.
+        let run = LONGEST - clock.step % LONGEST;
+        (until - clock.step).min(run)
     };
     steps.take(&mut dye, clock.stride, &mut ledger);
 }

@@ -170,6 +170,7 @@ impl Implicit {
         for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
             *single = *double as f32;
         }
+<<<<<<< HEAD
         let ahead = Ahead {
             alpha: scheme.alpha,
             beta: scheme.beta,
@@ -177,6 +178,11 @@ impl Implicit {
         };
         self.response
             .compute(&sheet.links, &self.x, &self.v, Some(ahead));
+=======
+        let coefficients = Some((scheme.alpha, scheme.beta));
+        self.response
+            .compute(&sheet.links, &self.x, &self.v, coefficients);
+>>>>>>> session
         self.pull.all_mut().fill(0.0);
         self.response.add_forces(&mut self.pull);
         for crease in &sheet.creases {

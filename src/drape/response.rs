@@ -90,7 +90,11 @@ impl Response {
         });
     }
 
+<<<<<<< HEAD
     fn compute_stretch(&mut self, links: &Links, x: &Rows, v: &Rows, ahead: Option<Ahead>) {
+=======
+    fn compute_stretch(&mut self, links: &Links, x: &Rows, v: &Rows, blocks: Option<(f64, f64)>) {
+>>>>>>> session
         let bend = &self.bend;
         each2(
             &mut self.stretch,
@@ -100,13 +104,18 @@ impl Response {
                 for (direction, (dx, dy)) in DIRECTIONS.into_iter().enumerate() {
                     let row = y as isize;
                     let [k] = links.stiffness.lines(row, K + direction, 0);
+<<<<<<< HEAD
                     let [front] = bend.lines(row, PUSH + direction, 0);
+=======
+                    let [ahead] = bend.lines(row, PUSH + direction, 0);
+>>>>>>> session
                     let [behind] = bend.lines(row - dy, PUSH + direction, -dx);
                     let ends = Ends::new(x, y, direction, 1);
                     let speeds = Ends::new(v, y, direction, 1);
                     let law = Stretch {
                         length: links.length(direction),
                         damping: links.damping[direction],
+<<<<<<< HEAD
                         alpha: ahead.map_or(0.0, |ahead| ahead.alpha),
                         beta: ahead.map_or(0.0, |ahead| ahead.beta),
                     };
@@ -124,6 +133,21 @@ impl Response {
                         }
                         (Model::Lander, _) => {
                             stretch_row::<false, true>(ends, k, pushes, law, force, block);
+=======
+                        alpha: blocks.map_or(0.0, |(alpha, _)| alpha),
+                        beta: blocks.map_or(0.0, |(_, beta)| beta),
+                    };
+                    let (force, block, pushes) = (out.take(), matrices.take(), [ahead, behind]);
+                    match (links.model, blocks.is_some()) {
+                        (Model::Choi, true) => {
+                            stretch_row::<true, true>(ends, speeds, k, pushes, law, force, block);
+                        }
+                        (Model::Choi, false) => {
+                            stretch_row::<true, false>(ends, speeds, k, pushes, law, force, block);
+                        }
+                        (Model::Lander, _) => {
+                            stretch_row::<false, true>(ends, speeds, k, pushes, law, force, block);
+>>>>>>> session
                         }
                     }
                 }

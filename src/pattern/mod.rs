@@ -6,11 +6,13 @@
 mod raster;
 mod seikaiha;
 mod shapes;
+mod strokes;
 
 use serde::{Deserialize, Serialize};
 
 pub use raster::{Canvas, Raster};
 pub(crate) use shapes::clouds;
+pub use strokes::{MOST_POINTS, Stroke};
 
 use crate::scenario::check::{Checker, Problem};
 use crate::scenario::units::Length;
@@ -135,6 +137,8 @@ pub enum Pattern {
         #[serde(default = "half")]
         open: f64,
     },
+    /// Strokes of a brush; where they cross the most of them counts.
+    Strokes(Vec<Stroke>),
     /// Everything that is in any of these (the most of them).
     Union(Vec<Pattern>),
     /// Only what is in all of these (the least of them).
@@ -268,6 +272,7 @@ impl Pattern {
                 at.field("arcs").within(*arcs, 1..=1000)?;
                 at.field("open").within(*open, 0.0..=1.0)
             }
+            Pattern::Strokes(strokes) => strokes::check(strokes, &at.field("Strokes"), cell_mm),
             Pattern::Union(_)
             | Pattern::Intersection(_)
             | Pattern::Without { .. }
@@ -288,6 +293,26 @@ impl Pattern {
         self.parts(at)
             .into_iter()
             .try_for_each(|(part, at)| part.check(&at, cell_mm))
+    }
+
+    /// This pattern with a stroke painted over it: what is in either, the most of them. A stroke joins
+    /// the strokes that are painted last; painting goes on where it stopped.
+    pub fn painted(self, stroke: Stroke) -> Pattern {
+        match self {
+            Pattern::Nowhere => Pattern::Strokes(vec![stroke]),
+            Pattern::Strokes(mut strokes) => {
+                strokes.push(stroke);
+                Pattern::Strokes(strokes)
+            }
+            Pattern::Union(mut parts) => {
+                match parts.last_mut() {
+                    Some(Pattern::Strokes(strokes)) => strokes.push(stroke),
+                    _ => parts.push(Pattern::Strokes(vec![stroke])),
+                }
+                Pattern::Union(parts)
+            }
+            other => Pattern::Union(vec![other, Pattern::Strokes(vec![stroke])]),
+        }
     }
 
     /// The patterns that this one is combined from, each with its place in the scenario.

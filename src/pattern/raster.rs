@@ -3,7 +3,7 @@
 use image::{ImageBuffer, Luma, imageops};
 use rayon::prelude::*;
 
-use super::{Fit, Pattern, seikaiha, shapes};
+use super::{Fit, Pattern, seikaiha, shapes, strokes};
 use crate::scenario::{Experiment, Images};
 
 /// One value from 0 to 1 for every position `(y, x)`, row 0 at the top.
@@ -160,6 +160,7 @@ impl<'a> Canvas<'a> {
                     seikaiha::paste(x, y, radius, f64::from(*arcs), *open)
                 })
             }
+            Pattern::Strokes(all) => strokes::draw(all, nx, ny, self.cell_mm),
             Pattern::Noise {
                 grain,
                 octaves,

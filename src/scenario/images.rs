@@ -127,7 +127,7 @@ impl Images {
     /// # Errors
     /// A [`Problem`] at the field, naming the file, if it is missing, corrupt or of another size than
     /// the cloth.
-    pub(super) fn load(scenario: &Scenario, beside: &Beside) -> Result<Self, Problem> {
+    pub(crate) fn load(scenario: &Scenario, beside: &Beside) -> Result<Self, Problem> {
         let mut images = Images::default();
         for (file, wanted, at) in scenario.pictures() {
             let path = beside.path(file);

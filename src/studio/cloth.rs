@@ -80,6 +80,11 @@ fn sampler() -> ImageSampler {
 
 /// RGB bytes as an image for the renderer, with all its halves.
 pub fn image(rgb: &[u8], width: usize, height: usize, kind: Kind) -> Image {
+    image_of_levels(mips::chain(rgb, width, height, kind), width, height, kind)
+}
+
+/// A picture and its halves ([`mips::chain`]) as an image for the renderer.
+pub fn image_of_levels(levels: Vec<u8>, width: usize, height: usize, kind: Kind) -> Image {
     let format = match kind {
         Kind::Colour => TextureFormat::Rgba8UnormSrgb,
         Kind::Normal => TextureFormat::Rgba8Unorm,
@@ -95,7 +100,7 @@ pub fn image(rgb: &[u8], width: usize, height: usize, kind: Kind) -> Image {
         RenderAssetUsages::default(),
     );
     image.texture_descriptor.mip_level_count = mips::levels(width, height);
-    image.data = Some(mips::chain(rgb, width, height, kind));
+    image.data = Some(levels);
     image.sampler = sampler();
     // Bevy writes only the first level into a texture that it can copy to; this one it makes anew.
     image.texture_descriptor.usage = TextureUsages::TEXTURE_BINDING;
@@ -132,9 +137,13 @@ pub fn spawn(
     let scale = pictures[0].width / cloth.grid.nx.max(1);
     let side = scenario.look.side;
     let normals = [side, side.other()].map(|side| normal_map(cloth, scenario, side, scale.max(1)));
-    let pictures = pictures.map(picture_image);
+    hang(world, shapes, pictures.map(picture_image), normals);
+}
+
+/// Hangs cloth of a shape in the studio; `pictures` and `reliefs` are of front and back.
+pub fn hang(world: &mut World, shapes: [Mesh; 2], pictures: [Image; 2], reliefs: [Image; 2]) {
     let mut images = world.resource_mut::<Assets<Image>>();
-    let normals = normals.map(|map| images.add(map));
+    let normals = reliefs.map(|map| images.add(map));
     let pictures = pictures.map(|picture| images.add(picture));
     let material = |i: usize| StandardMaterial {
         base_color_texture: Some(pictures[i].clone()),
@@ -176,16 +185,34 @@ pub fn move_to(world: &mut World, shapes: [Mesh; 2]) {
 
 /// Shows the cloth in other colours.
 pub fn paint(world: &mut World, pictures: [&Picture; 2]) {
+    repaint(world, pictures.map(picture_image));
+}
+
+/// Shows the cloth with other pictures of front and back.
+pub fn repaint(world: &mut World, pictures: [Image; 2]) {
     let assets = world.resource::<ClothAssets>().clone();
     let mut images = world.resource_mut::<Assets<Image>>();
     for (handle, picture) in assets.pictures.iter().zip(pictures) {
-        let _ = images.insert(handle, picture_image(picture));
+        let _ = images.insert(handle, picture);
     }
     // A material binds the texture that the image had when it was last changed.
     let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
     for (handle, picture) in assets.materials.iter().zip(&assets.pictures) {
         if let Some(mut material) = materials.get_mut(handle) {
             material.base_color_texture = Some(picture.clone());
+        }
+    }
+}
+
+/// Gives the cloth other reliefs of front and back.
+pub fn emboss(world: &mut World, reliefs: [Image; 2]) {
+    let assets = world.resource::<ClothAssets>().clone();
+    let mut images = world.resource_mut::<Assets<Image>>();
+    let reliefs = reliefs.map(|relief| images.add(relief));
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    for (handle, relief) in assets.materials.iter().zip(reliefs) {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.normal_map_texture = Some(relief);
         }
     }
 }

@@ -133,7 +133,8 @@ pub fn camera(world: &mut World, view: &ViewSpec) -> impl Bundle + use<> {
     )
 }
 
-fn ground_colour(view: &ViewSpec) -> Color {
+/// The colour of the ground, and of what is beyond it.
+pub fn ground_colour(view: &ViewSpec) -> Color {
     let [r, g, b] = to_rgb(view.ground);
     Color::srgb(r, g, b)
 }

@@ -105,10 +105,17 @@ impl Tile {
 impl Tile {
     /// Takes in what belongs to its cells.
     pub fn take(&mut self, supply: &[f32], dye: &Dye, grid: (usize, usize)) {
+        for (line, lane, (y, x)) in self.places(grid).collect::<Vec<_>>() {
+            self.supply[line * T + lane] = supply[y * grid.0 + x];
+        }
+        self.take_dye(dye, grid);
+    }
+
+    /// Takes in the dye of its cells.
+    pub fn take_dye(&mut self, dye: &Dye, grid: (usize, usize)) {
         let layer_len = grid.0 * grid.1;
         for (line, lane, (y, x)) in self.places(grid).collect::<Vec<_>>() {
             let i = y * grid.0 + x;
-            self.supply[line * T + lane] = supply[i];
             for layer in 0..2 {
                 self.free[layer][(line + 1) * S + lane + 1] = dye.free[layer * layer_len + i];
                 self.bound[layer][line * T + lane] = dye.bound[layer * layer_len + i];

@@ -117,6 +117,14 @@ impl PixelDiffusing {
         dye
     }
 
+    /// Goes on from what was kept once, in the same bath.
+    pub fn resume(&mut self, dye: &Dye, account: Account) {
+        let grid = self.grid;
+        let tiles = self.tiles.par_iter_mut();
+        tiles.for_each(|tile| tile.take_dye(dye, grid));
+        self.account = account;
+    }
+
     /// What the scans have done.
     pub fn account(&self) -> Account {
         self.account

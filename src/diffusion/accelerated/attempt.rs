@@ -64,7 +64,7 @@ impl Leap {
         self.stages(&mixes);
         self.evaluations += mixes.len() as u64;
         let outcome = self.finish(h, is_plain);
-        self.booked = [0.0; 2];
+        self.booked = None;
         self.brought = baths::total(&self.given[0]);
         outcome
     }

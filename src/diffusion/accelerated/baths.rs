@@ -77,6 +77,16 @@ impl Baths {
         })
     }
 
+    /// Bytes of memory.
+    pub fn bytes(&self) -> usize {
+        let fields = [&self.share, &self.towards, &self.weight, &self.drive];
+        let fields = fields.into_iter().chain(&self.carry);
+        fields
+            .map(|field| size_of_val(field.as_slice()))
+            .sum::<usize>()
+            + size_of_val(self.rates.as_slice())
+    }
+
     /// Lets the next leap begin.
     pub fn go_on(&mut self) {
         self.rate[0] = self.rate[1];

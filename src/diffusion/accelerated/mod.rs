@@ -24,6 +24,7 @@
 mod attempt;
 mod baths;
 mod binding;
+mod keep;
 mod limiter;
 mod moments;
 mod rates;
@@ -39,6 +40,7 @@ use bevy::prelude::*;
 use self::attempt::PLAIN;
 use self::baths::{Baths, Given};
 use self::binding::Binding;
+pub use self::keep::KeptLeap;
 use super::Faces;
 use crate::cloth::Cloth;
 use crate::diffusion::held::Held;
@@ -98,8 +100,12 @@ pub struct Leap {
     clipped: f64,
     /// What baths gave and took in the whole leap.
     brought: Given,
-    /// What is in the ledger already of what all supply gave and took.
-    booked: Given,
+    /// What the ledger said before the leap, and when this leap last wrote there: what has been supplied
+    /// is added to the former, so that the sum does not depend on how often it was asked for. None
+    /// before the first time.
+    booked: Option<[Given; 2]>,
+    /// What has been done so far would have been the same whatever happens from this step on.
+    depends: u64,
     /// Steps of the next leap, if nothing ends it earlier.
     next: u64,
     /// Evaluations of the rate so far.
@@ -161,7 +167,8 @@ impl Leap {
             soaking: 0,
             clipped: 0.0,
             brought: [0.0; 2],
-            booked: [0.0; 2],
+            booked: None,
+            depends: 0,
             next: 1,
             evaluations: 0,
             leaps: 0,
@@ -244,12 +251,19 @@ impl Leap {
         let blocks = self.baths.as_ref().map_or(0, |_| self.lanes.len());
         self.given = [0, 1].map(|_| vec![[0.0; 2]; blocks]);
         self.soaked = vec![Cells::ZERO; blocks];
+        self.booked = None;
         let baths = self.baths.as_ref();
         let binds = self.binding.as_ref().map_or(0.0, Binding::stiffness);
         let error = self.tolerance / 20.0;
         self.soaking = baths.map_or(0, |baths| baths.soaking(error, binds));
         let spreads = self.spreads;
         self.stiffness = baths.map_or(spreads, |baths| baths.stiffness(spreads)) + binds;
+        self.bind_after_moving();
+        self.find_rates(None);
+    }
+
+    /// Says of what dye binds a share: see [`Binding::moved`].
+    fn bind_after_moving(&mut self) {
         let splits = self.splits();
         if let Some(binding) = &mut self.binding {
             binding.moved = match self.baths {
@@ -258,7 +272,6 @@ impl Leap {
                 None => 0.0,
             };
         }
-        self.find_rates(None);
     }
 
     /// Leaps on from the end of the last leap, but not beyond `limit`.
@@ -273,6 +286,11 @@ impl Leap {
         let begin = self.span.end;
         let most = limit.saturating_sub(begin).clamp(1, self.longest());
         let never_too_long = self.never_too_long();
+        let wanted = begin.saturating_add(self.next.clamp(1, self.longest()));
+        self.depends = self.depends.max(match wanted > limit {
+            true => limit.saturating_add(1),
+            false => wanted,
+        });
         loop {
             let steps = self.next.clamp(1, most);
             let outcome = self.attempt(steps);

@@ -71,9 +71,13 @@ impl Leap {
             let brought = [0, 1].map(|i| cubic.at(self.brought[i], first[i], last[i]));
             supplied = plus(supplied, brought);
         }
-        let [gave, took] = [0, 1].map(|i| supplied[i] - self.booked[i]);
-        ledger.book_apart(gave, took);
-        self.booked = supplied;
+        let now = [ledger.supplied, ledger.removed];
+        // Others may have booked something meanwhile.
+        let before = self.booked.map_or(now, |[before, written]| {
+            [0, 1].map(|i| before[i] + (now[i] - written[i]))
+        });
+        [ledger.supplied, ledger.removed] = plus(before, supplied);
+        self.booked = Some([before, [ledger.supplied, ledger.removed]]);
     }
 
     /// A row at the share `t` of the leap.
