@@ -131,6 +131,8 @@ pub(super) struct State {
     pub last_v: Vec<DVec3>,
     /// The length of the last step; none if there is nothing to go on from.
     pub last_step: Option<f64>,
+    /// Which particles were stopped or turned in the last step, so that BDF2 has nothing to go on from.
+    pub is_fresh: Vec<bool>,
     /// What each particle rests on.
     pub anchors: Vec<Option<Anchor>>,
 }
@@ -182,6 +184,7 @@ pub struct Drape {
     /// What was near when the last step ended.
     pairs: Vec<Pair>,
     tree: Tree,
+    triangles: Vec<[u32; 3]>,
     implicit: Implicit,
 }
 
@@ -197,11 +200,13 @@ impl Drape {
             time: 0.0,
             tree: Tree::new(particles, sheet.links.spacing),
             implicit: Implicit::new(&sheet),
+            triangles: sheet.topology.triangles(),
             state: State {
                 v: none.clone(),
                 last_move: none.clone(),
                 last_v: none,
                 last_step: None,
+                is_fresh: vec![false; x.len()],
                 anchors: vec![None; x.len()],
                 x,
             },
@@ -405,6 +410,9 @@ impl Drape {
     ) -> (Filtered, usize) {
         let from = self.corners();
         let exact = self.colliders.exact.clone();
+        let triangles = std::mem::take(&mut self.triangles);
+        let (one, two) = self.sheet.links.spacing;
+        let (leg, shorter) = (one.max(two), one.min(two));
         let bodies = Bodies {
             particles: self.state.x.len(),
             from: &from,
@@ -413,6 +421,8 @@ impl Drape {
             friction: self.settings.friction,
             exact: &exact,
             covered,
+            triangles: &triangles,
+            longest: [(1.05 * leg).powi(2), (1.1 * self.sheet.links.length(2)).powi(2)],
         };
         moves.resize(from.len(), DVec3::ZERO);
         for i in 0..bodies.particles {
@@ -423,11 +433,13 @@ impl Drape {
         };
         let mut pairs = self.near(&from, &ends(moves));
         let near = pairs.len();
-        let slack = 0.5 * self.settings.thickness;
+        // Little enough, too, that what was smooth remains so: see `tree`.
+        let slack = (0.5 * self.settings.thickness).min(0.04 * shorter);
         let filtered = filter(bodies, &mut pairs, moves, changed, slack, |moves| {
             self.near(&from, &ends(moves))
         });
         self.pairs = pairs;
+        self.triangles = triangles;
         (filtered, near)
     }
 
@@ -467,10 +479,9 @@ impl Drape {
         }
         state.anchors = anchors;
         for i in 0..state.x.len() {
-            // What was stopped has no past for BDF2 to go on from.
-            let v = if changed[i] { moves[i] / step } else { v[i] };
-            state.last_v[i] = if changed[i] { v } else { state.v[i] };
-            state.v[i] = v;
+            state.last_v[i] = state.v[i];
+            state.v[i] = if changed[i] { moves[i] / step } else { v[i] };
+            state.is_fresh[i] = changed[i];
             state.last_move[i] = moves[i];
             state.x[i] += moves[i];
         }

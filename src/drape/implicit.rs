@@ -46,6 +46,10 @@ pub(super) struct Implicit {
     contacts: Vec<Contact>,
 }
 
+/// α of BDF2 as a share of backward Euler's: a particle whose past says nothing, as it was stopped by
+/// something, takes a step of backward Euler among others that take one of BDF2.
+const FRESH: f64 = 4.0 / 9.0;
+
 /// α, β and whether the step is BDF2's.
 #[derive(Clone, Copy)]
 struct Scheme {
@@ -166,6 +170,13 @@ impl Implicit {
         for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
             *single = *double as f32;
         }
+        if scheme.bdf2 {
+            // BDF2 has α = 4h²/9, backward Euler h²: divided by that, both are one symmetric system.
+            let nx = self.mass.nx;
+            for i in (0..state.x.len()).filter(|i| state.is_fresh[*i]) {
+                *self.mass.get_mut(i % nx, i / nx, 0) *= FRESH as f32;
+            }
+        }
         let ahead = Ahead {
             alpha: scheme.alpha,
             beta: scheme.beta,
@@ -190,11 +201,13 @@ impl Implicit {
             for x in 0..nx {
                 let i = y * nx + x;
                 let m = mass.get(x, y, 0);
-                let inert = if scheme.bdf2 {
+                let inert = if !scheme.bdf2 {
+                    h * state.v[i]
+                } else if state.is_fresh[i] {
+                    FRESH * h * state.v[i]
+                } else {
                     let v = 8.0 * state.v[i] - 2.0 * state.last_v[i];
                     state.last_move[i] / 3.0 + (h / 9.0) * v
-                } else {
-                    h * state.v[i]
                 };
                 let mut force = DVec3::new(px[x], py[x], pz[x]) + m * given.settings.gravity;
                 let mut block = [0.0; 6];
@@ -266,6 +279,7 @@ impl Implicit {
                 added.pair(*pair, corner, guess, |i| given.mobility[i], rule);
             }
         }
+        drop_the_same_face(&mut touches, &state.x);
         for touch in &touches {
             let i = touch.particle as usize;
             let mass = 1.0 / given.mobility[i];
@@ -273,6 +287,25 @@ impl Implicit {
         }
         touches
     }
+}
+
+/// Leaves of the touches of a particle with the triangles of one flat face only the nearest: the closest
+/// points of the others lie on their edges, and would push along the face.
+fn drop_the_same_face(touches: &mut Vec<Touch>, x: &[DVec3]) {
+    touches.sort_by(|a, b| a.particle.cmp(&b.particle).then(a.distance.total_cmp(&b.distance)));
+    let mut kept: Vec<Touch> = Vec::with_capacity(touches.len());
+    for touch in touches.iter() {
+        let at = |touch: &Touch| x[touch.particle as usize] - touch.distance * touch.normal;
+        let is_same = |nearer: &&Touch| {
+            let along = at(touch) - at(nearer);
+            along.dot(nearer.normal).abs() <= 1e-6 * nearer.distance
+        };
+        let before = kept.iter().rev().take_while(|nearer| nearer.particle == touch.particle);
+        if before.filter(is_same).count() == 0 {
+            kept.push(*touch);
+        }
+    }
+    *touches = kept;
 }
 
 /// Where a particle will about go: on as before.
