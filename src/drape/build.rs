@@ -10,7 +10,6 @@ use super::collide::topology::Topology;
 use super::crease::{Crease, press};
 use super::drape::{Drape, Settings, Sheet};
 use super::exact::{crossings, sunk};
-use super::limit::locks_at;
 use super::pins::Pin;
 use super::spec::{ColliderSpec, DrapeSpec, Fold, Hold, Outline, Start, Xyz};
 use super::weights::assemble;
@@ -80,16 +79,14 @@ impl DrapeSpec {
             thickness: 1e-3 * solver.apart_mm,
             friction: measured.friction,
             itself: solver.itself,
-            locks_at: locks_at(
-                9.81e-3 * measured.weight * size.0.max(size.1),
-                measured.stretch.0.min(measured.stretch.1),
-            ),
+            locks_at: measured.locks_at(size.0.max(size.1)),
         };
         let sheet = Sheet {
             links,
             creases,
             mass,
             topology,
+            area,
         };
         let pins = self.pins(size, &sheet);
         let mut drape = Drape::new(settings, sheet, x, colliders);

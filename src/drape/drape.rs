@@ -4,7 +4,7 @@
 //! or [`explicit`](super::explicit)); the filter shortens or turns the moves of those that would pass through
 //! something ([`filter`](super::collide::filter)); the state takes what is left.
 
-use bevy::math::DVec3;
+use bevy::math::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -15,15 +15,18 @@ use super::collide::near::{Motion, with_colliders, with_itself};
 use super::collide::topology::Topology;
 use super::collide::tree::Tree;
 use super::contact::{Anchor, FASTEST_OUT, Rule, STIFFNESS, Touch};
-use super::crease::CreaseLink;
+use super::crease::{Crease, CreaseLink, press};
 use super::explicit::{Explicit, Pulls};
+use super::hand::Hand;
 use super::implicit::Implicit;
 use super::lattice::Links;
 use super::limit::{LOCKED, limit};
+use super::material::MaterialSpec;
 use super::pcg::Solved;
 use super::pins::Pin;
 use super::rows::Rows;
 use super::surface::Surface;
+use super::weights::assemble;
 use super::wind::{AIR_DENSITY, Wind};
 
 /// How time is stepped.
@@ -92,6 +95,8 @@ pub struct Sheet {
     pub mass: Rows,
     /// How its particles make a surface.
     pub topology: Topology,
+    /// How much cloth there is in every cell, m², a row of `particles.0 − 1` at a time.
+    pub area: Vec<f64>,
 }
 
 /// Why a cloth cannot go on.
@@ -143,6 +148,7 @@ pub(super) struct Given<'a> {
     pub sheet: &'a Sheet,
     pub colliders: &'a Colliders,
     pub wind: &'a Wind,
+    pub hands: &'a [Hand],
     pub state: &'a State,
     pub pairs: &'a [Pair],
     pub time: f64,
@@ -174,6 +180,8 @@ pub struct Drape {
     pub wind: Wind,
     /// What holds it.
     pub pins: Vec<Pin>,
+    /// Hands that draw at it; implicit steps heed them.
+    pub hands: Vec<Hand>,
     /// Seconds since it began.
     pub time: f64,
     sheet: Sheet,
@@ -197,6 +205,7 @@ impl Drape {
             settings,
             wind: Wind::still(),
             pins: Vec::new(),
+            hands: Vec::new(),
             time: 0.0,
             tree: Tree::new(particles, sheet.links.spacing),
             implicit: Implicit::new(&sheet),
@@ -246,6 +255,11 @@ impl Drape {
     /// What it falls on.
     pub fn colliders(&self) -> &Colliders {
         &self.colliders
+    }
+
+    /// The triangles of its surface, by particles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
     }
 
     /// The surface as it is now.
@@ -364,6 +378,7 @@ impl Drape {
             sheet: &self.sheet,
             colliders: &self.colliders,
             wind: &self.wind,
+            hands: &self.hands,
             state: &self.state,
             pairs: &self.pairs,
             time: self.time,
@@ -488,6 +503,118 @@ impl Drape {
         state.last_step = Some(step);
         self.time += step;
         Ok(solved)
+    }
+}
+
+/// All that a cloth needs to come back to a moment, and go on from it as it did.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    time: f64,
+    state: State,
+    pins: Vec<Pin>,
+    taken: Vec<Option<Vec<DVec3>>>,
+    hands: Vec<Hand>,
+    wind: Wind,
+    sheet: Sheet,
+    settings: Settings,
+    guesses: [Rows<f32>; 2],
+    pairs: Vec<Pair>,
+}
+
+impl Drape {
+    /// What it takes to come back to this moment.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            time: self.time,
+            state: self.state.clone(),
+            pins: self.pins.clone(),
+            taken: self.taken.clone(),
+            hands: self.hands.clone(),
+            wind: self.wind.clone(),
+            sheet: self.sheet.clone(),
+            settings: self.settings.clone(),
+            guesses: self.implicit.guesses.clone(),
+            pairs: self.pairs.clone(),
+        }
+    }
+
+    /// Goes to a moment of the same cloth.
+    pub fn restore(&mut self, to: &Snapshot) {
+        let to = to.clone();
+        self.time = to.time;
+        self.state = to.state;
+        self.pins = to.pins;
+        self.taken = to.taken;
+        self.hands = to.hands;
+        self.wind = to.wind;
+        self.sheet = to.sheet;
+        self.settings = to.settings;
+        self.implicit.guesses = to.guesses;
+        self.pairs = to.pairs;
+    }
+
+    /// Fixes a particle where it is, from now on.
+    pub fn pin(&mut self, particle: usize) {
+        if particle < self.state.x.len() {
+            self.pins.push(Pin {
+                particles: vec![particle],
+                from: self.time,
+                until: f64::INFINITY,
+                path: Vec::new(),
+            });
+        }
+    }
+
+    /// Takes every pin off a particle; other particles of the same pins stay held.
+    pub fn unpin(&mut self, particle: usize) {
+        self.taken.resize(self.pins.len(), None);
+        for (pin, taken) in self.pins.iter_mut().zip(&mut self.taken) {
+            let Some(at) = pin.particles.iter().position(|i| *i == particle) else {
+                continue;
+            };
+            pin.particles.remove(at);
+            if let Some(taken) = taken {
+                taken.remove(at);
+            }
+        }
+    }
+
+    /// Presses a crease between two places on the cloth (shares of its width and height), folding by
+    /// `angle` radians, positive where the front is outside; `stiffness` in N·m/(m·rad). Returns how many
+    /// links it crosses: none where it lies on an older crease.
+    pub fn add_crease(&mut self, from: DVec2, to: DVec2, angle: f64, stiffness: f64) -> usize {
+        let links = &mut self.sheet.links;
+        let (nx, ny) = links.particles;
+        let size = DVec2::new((nx - 1) as f64, (ny - 1) as f64) * DVec2::from(links.spacing);
+        let crease = Crease {
+            from: from * size,
+            to: to * size,
+            angle,
+            stiffness,
+        };
+        if from == to {
+            return 0;
+        }
+        let pressed = press(links, &[crease]);
+        let count = pressed.len();
+        self.sheet.creases.extend(pressed);
+        count
+    }
+
+    /// Makes the cloth of another material, on the same grid and where it is. Creases stay as stiff as they
+    /// were pressed.
+    pub fn set_material(&mut self, material: &MaterialSpec) {
+        let Sheet { links, area, .. } = &self.sheet;
+        let (particles, spacing) = (links.particles, links.spacing);
+        let (mass, mut links) = assemble(&material.in_si(), particles, spacing, area);
+        for crease in &self.sheet.creases {
+            crease.take_from(&mut links);
+        }
+        let size = (particles.0 as f64 * spacing.0).max(particles.1 as f64 * spacing.1);
+        self.settings.friction = material.friction;
+        self.settings.locks_at = material.locks_at(size);
+        self.sheet.mass = mass;
+        self.sheet.links = links;
     }
 }
 

@@ -40,7 +40,7 @@ pub(super) struct Implicit {
     pull: Rows,
     u: Rows<f32>,
     /// The last two moves.
-    guesses: [Rows<f32>; 2],
+    pub guesses: [Rows<f32>; 2],
     solver: Work,
     yarns: Yarns,
     contacts: Vec<Contact>,
@@ -115,6 +115,7 @@ impl Implicit {
         let (state, sheet) = (given.state, given.sheet);
         self.take_links(given, scheme);
         self.take_inertia_and_air(given, scheme);
+        self.take_hands(given, scheme);
         let touches = self.take_contacts(given, scheme);
         let (mass, pull) = (&sheet.mass, &self.pull);
         each(&mut self.solver.r, |y, r| {
@@ -226,6 +227,28 @@ impl Implicit {
                 }
             }
         });
+    }
+
+    /// Adds the springs by which hands draw.
+    fn take_hands(&mut self, given: &Given, scheme: Scheme) {
+        let nx = self.x.nx;
+        for hand in given.hands {
+            let i = hand.particle;
+            if given.mobility[i] <= 0.0 {
+                continue;
+            }
+            let (x, y) = (i % nx, i / nx);
+            // v as it will be is v + (change of v by the move): linear, so taken at no move here.
+            let v = self.v.vector(x, y);
+            let (force, stiffness, damping) =
+                hand.pull(self.x.vector(x, y), v, 1.0 / given.mobility[i]);
+            let pull = self.pull.vector(x, y) + scheme.alpha * force;
+            self.pull.set_vector(x, y, pull);
+            for c in 0..3 {
+                let own = scheme.alpha * stiffness + scheme.beta * damping;
+                *self.own.get_mut(x, y, c) += own as f32;
+            }
+        }
     }
 
     /// Adds contacts; returns those of particles with what does not move.

@@ -59,6 +59,7 @@ pub fn assemble(
         }
     }
     let moduli = Moduli::new(measured, particles, spacing);
+    let stiffest = MOST_RAISED * measured.buckling * moduli.stretch[0].max(moduli.stretch[1]);
     for direction in 0..4 {
         let length = links.length(direction);
         for hops in [1, 2] {
@@ -104,7 +105,7 @@ pub fn assemble(
                         measured.buckling * moduli.stretch[direction] * area / (length * length);
                     *stiffness.get_mut(x, y, K_B + direction) = k_b;
                     *stiffness.get_mut(x, y, C_B + direction) =
-                        c_b.max(buckles_soon(measured, k_b, length).min(MOST_RAISED * c_b));
+                        c_b.max(buckles_soon(measured, k_b, length).min(stiffest * area / (length * length)));
                 }
             }
         }
@@ -130,7 +131,8 @@ fn buckles_soon(measured: &Measured, k_b: f64, length: f64) -> f64 {
 /// The share of its balanced curvature at which cloth has buckled.
 const EARLY: f64 = 0.3;
 
-/// c_b is raised by no more than this: a very stiff link that buckles shakes what it joins.
+/// c_b is raised to no more than this many times that of a yarn: a very stiff link that buckles shakes what
+/// it joins.
 const MOST_RAISED: f64 = 10.0;
 
 /// Energy densities by direction: ½·stretch·ε², bending·κ².
