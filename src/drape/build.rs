@@ -10,7 +10,6 @@ use super::collide::topology::Topology;
 use super::crease::{Crease, press};
 use super::drape::{Drape, Settings, Sheet};
 use super::exact::{crossings, sunk};
-use super::limit::locks_at;
 use super::pins::Pin;
 use super::spec::{ColliderSpec, DrapeSpec, Fold, Hold, Outline, Start, Xyz};
 use super::weights::assemble;
@@ -80,16 +79,14 @@ impl DrapeSpec {
             thickness: 1e-3 * solver.apart_mm,
             friction: measured.friction,
             itself: solver.itself,
-            locks_at: locks_at(
-                9.81e-3 * measured.weight * size.0.max(size.1),
-                measured.stretch.0.min(measured.stretch.1),
-            ),
+            locks_at: measured.locks_at(size.0.max(size.1)),
         };
         let sheet = Sheet {
             links,
             creases,
             mass,
             topology,
+            area,
         };
         let pins = self.pins(size, &sheet);
         let mut drape = Drape::new(settings, sheet, x, colliders);
@@ -121,10 +118,7 @@ impl DrapeSpec {
         let areas: Vec<f64> = (0..across * down).map(cell).collect();
         // Slivers would be too light to compute with.
         let least = 0.05 * dx * dy;
-        areas
-            .into_iter()
-            .map(|a| if a < least { 0.0 } else { a })
-            .collect()
+        areas.into_iter().map(|a| if a < least { 0.0 } else { a }).collect()
     }
 
     fn start_positions(&self, (width, height): (f64, f64), seed: u64) -> Vec<DVec3> {
@@ -148,8 +142,11 @@ impl DrapeSpec {
                     let longitude = x / radius_m;
                     let latitude = ((0.5 * height - y) / radius_m).clamp(-FRAC_PI_2, FRAC_PI_2);
                     let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
-                    let out =
-                        DVec3::new(cos * libm::sin(longitude), sin, cos * libm::cos(longitude));
+                    let out = DVec3::new(
+                        cos * libm::sin(longitude),
+                        sin,
+                        cos * libm::cos(longitude),
+                    );
                     vector(centre_m) + radius_m * out
                 }
             }
@@ -210,8 +207,7 @@ impl DrapeSpec {
             return Err(at.problem(what.into()));
         }
         if !crossings(x, &triangles, &colliders.mesh).is_empty() {
-            let what =
-                "the cloth begins in the way of itself or of a table or mesh; it must begin free";
+            let what = "the cloth begins in the way of itself or of a table or mesh; it must begin free";
             return Err(at.problem(what.into()));
         }
         Ok(())

@@ -85,7 +85,5 @@ pub fn sunk(x: &[DVec3], triangles: &[[u32; 3]], colliders: &Colliders) -> Vec<u
             }
         })
     };
-    (0..triangles.len())
-        .filter(|i| inside(&triangles[*i]))
-        .collect()
+    (0..triangles.len()).filter(|i| inside(&triangles[*i])).collect()
 }

@@ -40,11 +40,15 @@ pub(super) struct Implicit {
     pull: Rows,
     u: Rows<f32>,
     /// The last two moves.
-    guesses: [Rows<f32>; 2],
+    pub guesses: [Rows<f32>; 2],
     solver: Work,
     yarns: Yarns,
     contacts: Vec<Contact>,
 }
+
+/// α of BDF2 as a share of backward Euler's: a particle whose past says nothing, as it was stopped by
+/// something, takes a step of backward Euler among others that take one of BDF2.
+const FRESH: f64 = 4.0 / 9.0;
 
 /// α, β and whether the step is BDF2's.
 #[derive(Clone, Copy)]
@@ -59,8 +63,7 @@ impl Scheme {
         let h = given.step;
         let same = |last: f64| (last - h).abs() < 1e-9 * h;
         // The first step has no past, nor has one of another length.
-        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same)
-        {
+        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same) {
             Scheme {
                 alpha: 4.0 * h * h / 9.0,
                 beta: 2.0 * h / 3.0,
@@ -112,6 +115,7 @@ impl Implicit {
         let (state, sheet) = (given.state, given.sheet);
         self.take_links(given, scheme);
         self.take_inertia_and_air(given, scheme);
+        self.take_hands(given, scheme);
         let touches = self.take_contacts(given, scheme);
         let (mass, pull) = (&sheet.mass, &self.pull);
         each(&mut self.solver.r, |y, r| {
@@ -134,9 +138,7 @@ impl Implicit {
         let [last, before] = &self.guesses;
         self.solver.begin(&system, [last, before], &mut self.u);
         let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);
-        let solved = self
-            .solver
-            .solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
+        let solved = self.solver.solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
         self.guesses.swap(0, 1);
         self.guesses[0].clone_from(&self.u);
         let nx = sheet.links.particles.0;
@@ -164,25 +166,24 @@ impl Implicit {
             let v = scheme.velocity(*lead, state.last_move[i], given.step);
             self.v.set_particle(i, v);
             let held = given.mobility[i] <= 0.0;
-            self.coming
-                .set_particle(i, if held { DVec3::ZERO } else { about(given, i) });
+            self.coming.set_particle(i, if held { DVec3::ZERO } else { about(given, i) });
         }
         for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
             *single = *double as f32;
         }
-<<<<<<< HEAD
+        if scheme.bdf2 {
+            // BDF2 has α = 4h²/9, backward Euler h²: divided by that, both are one symmetric system.
+            let nx = self.mass.nx;
+            for i in (0..state.x.len()).filter(|i| state.is_fresh[*i]) {
+                *self.mass.get_mut(i % nx, i / nx, 0) *= FRESH as f32;
+            }
+        }
         let ahead = Ahead {
             alpha: scheme.alpha,
             beta: scheme.beta,
             moves: &self.coming,
         };
-        self.response
-            .compute(&sheet.links, &self.x, &self.v, Some(ahead));
-=======
-        let coefficients = Some((scheme.alpha, scheme.beta));
-        self.response
-            .compute(&sheet.links, &self.x, &self.v, coefficients);
->>>>>>> session
+        self.response.compute(&sheet.links, &self.x, &self.v, Some(ahead));
         self.pull.all_mut().fill(0.0);
         self.response.add_forces(&mut self.pull);
         for crease in &sheet.creases {
@@ -201,11 +202,13 @@ impl Implicit {
             for x in 0..nx {
                 let i = y * nx + x;
                 let m = mass.get(x, y, 0);
-                let inert = if scheme.bdf2 {
+                let inert = if !scheme.bdf2 {
+                    h * state.v[i]
+                } else if state.is_fresh[i] {
+                    FRESH * h * state.v[i]
+                } else {
                     let v = 8.0 * state.v[i] - 2.0 * state.last_v[i];
                     state.last_move[i] / 3.0 + (h / 9.0) * v
-                } else {
-                    h * state.v[i]
                 };
                 let mut force = DVec3::new(px[x], py[x], pz[x]) + m * given.settings.gravity;
                 let mut block = [0.0; 6];
@@ -226,6 +229,28 @@ impl Implicit {
         });
     }
 
+    /// Adds the springs by which hands draw.
+    fn take_hands(&mut self, given: &Given, scheme: Scheme) {
+        let nx = self.x.nx;
+        for hand in given.hands {
+            let i = hand.particle;
+            if given.mobility[i] <= 0.0 {
+                continue;
+            }
+            let (x, y) = (i % nx, i / nx);
+            // v as it will be is v + (change of v by the move): linear, so taken at no move here.
+            let v = self.v.vector(x, y);
+            let (force, stiffness, damping) =
+                hand.pull(self.x.vector(x, y), v, 1.0 / given.mobility[i]);
+            let pull = self.pull.vector(x, y) + scheme.alpha * force;
+            self.pull.set_vector(x, y, pull);
+            for c in 0..3 {
+                let own = scheme.alpha * stiffness + scheme.beta * damping;
+                *self.own.get_mut(x, y, c) += own as f32;
+            }
+        }
+    }
+
     /// Adds contacts; returns those of particles with what does not move.
     fn take_contacts(&mut self, given: &Given, scheme: Scheme) -> Vec<Touch> {
         let state = given.state;
@@ -236,13 +261,7 @@ impl Implicit {
             alpha: scheme.alpha,
             step: given.step,
         };
-        let guess = |i: usize| {
-            if i < count {
-                about(given, i)
-            } else {
-                DVec3::ZERO
-            }
-        };
+        let guess = |i: usize| if i < count { about(given, i) } else { DVec3::ZERO };
         let corner = |i: usize| match state.x.get(i) {
             Some(x) => *x,
             None => given.colliders.mesh.corners[i - count],
@@ -283,6 +302,7 @@ impl Implicit {
                 added.pair(*pair, corner, guess, |i| given.mobility[i], rule);
             }
         }
+        drop_the_same_face(&mut touches, &state.x);
         for touch in &touches {
             let i = touch.particle as usize;
             let mass = 1.0 / given.mobility[i];
@@ -290,6 +310,25 @@ impl Implicit {
         }
         touches
     }
+}
+
+/// Leaves of the touches of a particle with the triangles of one flat face only the nearest: the closest
+/// points of the others lie on their edges, and would push along the face.
+fn drop_the_same_face(touches: &mut Vec<Touch>, x: &[DVec3]) {
+    touches.sort_by(|a, b| a.particle.cmp(&b.particle).then(a.distance.total_cmp(&b.distance)));
+    let mut kept: Vec<Touch> = Vec::with_capacity(touches.len());
+    for touch in touches.iter() {
+        let at = |touch: &Touch| x[touch.particle as usize] - touch.distance * touch.normal;
+        let is_same = |nearer: &&Touch| {
+            let along = at(touch) - at(nearer);
+            along.dot(nearer.normal).abs() <= 1e-6 * nearer.distance
+        };
+        let before = kept.iter().rev().take_while(|nearer| nearer.particle == touch.particle);
+        if before.filter(is_same).count() == 0 {
+            kept.push(*touch);
+        }
+    }
+    *touches = kept;
 }
 
 /// Where a particle will about go: on as before.

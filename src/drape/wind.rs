@@ -58,11 +58,7 @@ impl Wind {
         });
         Wind {
             mean,
-            waves: if speed > 0.0 {
-                waves.collect()
-            } else {
-                Vec::new()
-            },
+            waves: if speed > 0.0 { waves.collect() } else { Vec::new() },
         }
     }
 
