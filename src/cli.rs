@@ -9,9 +9,9 @@ use clap_complete::Shell;
 #[derive(Debug, Parser)]
 #[command(
     version,
-    arg_required_else_help = true,
     after_help = "\
 Begin with:
+  dyelapse                          watch a cloth being dyed, in a window
   dyelapse list                     see the scenarios that come with the program
   dyelapse record one_drop          record the smallest one, in about a second
   dyelapse record my_cloth.ron      record your own
@@ -20,14 +20,23 @@ A scenario is a text file. Copy a bundled one from a recording's folder and chan
 `dyelapse check` tells whether it is right."
 )]
 pub struct Cli {
-    /// What to do.
+    /// What to do; left out, the window is opened.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 /// What can be done.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Watch a cloth being dyed, and play with it, in a window; what plain `dyelapse` does too
+    ///
+    /// Needs a display and a graphics driver (Vulkan; drawing on the processor will do).
+    #[command(after_help = "\
+Examples:
+  dyelapse watch                       what was open last, at first seikaiha
+  dyelapse watch batik_tablecloth
+  dyelapse watch my_cloth.ron          shown anew whenever the file changes")]
+    Watch(Watch),
     /// Dye a cloth and record it as a time-lapse
     ///
     /// Writes a folder: frame_00000.png and on, sheet.png with the chosen moments side by side,
@@ -124,6 +133,23 @@ fn pixels(text: &str) -> Result<(u32, u32), String> {
     let (width, height) = text.split_once(['x', '×']).ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse().map_err(|_| wrong());
     Ok((number(width)?, number(height)?))
+}
+
+/// `dyelapse watch`.
+#[derive(Debug, Default, clap::Args)]
+pub struct Watch {
+    /// A scenario file, or the name of a bundled scenario [default: what was open last]
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: Option<String>,
+    /// Width and height of the window, such as 1280x800 [default: as it was last]
+    #[arg(long, value_name = "WxH", value_parser = pixels)]
+    pub size: Option<(u32, u32)>,
+    /// Follow a script of acts (see docs/watch.md)
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+    /// Write what happened to this file, a line for each act of the script
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
 }
 
 /// `dyelapse record`.

@@ -8,6 +8,7 @@ mod progress;
 mod record;
 mod segment;
 mod sheet;
+mod watch;
 mod wif;
 
 use std::fmt::Display;
@@ -28,7 +29,9 @@ const INTERRUPTED: u8 = 130;
 
 /// Does what was typed.
 pub fn run(cli: Cli) -> ExitCode {
-    match cli.command {
+    let command = cli.command.unwrap_or_else(|| Command::Watch(Default::default()));
+    match command {
+        Command::Watch(arguments) => watch::run(&arguments),
         Command::Record(arguments) => record::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Sheet(arguments) => sheet::run(&arguments),

@@ -9,6 +9,7 @@ use crate::studio::camera::Way;
 use crate::studio::hung::Hung;
 use crate::studio::light::{self, Quality};
 use crate::studio::offscreen::{self, NoFrame, Offscreen, most_pixels};
+use crate::studio::things::Furniture;
 use crate::studio::{cloth, things};
 use crate::texture::{OtherSide, Picture, see_both_sides};
 
@@ -62,7 +63,7 @@ impl Draped {
         if pixels > most {
             return Err(NoFrame::TooLarge { pixels, most }.into());
         }
-        things::spawn(world, &hung.spec, &hung.drape);
+        things::spawn(world, &Furniture::of(&hung.spec, &hung.drape));
         let way = Way::new(&hung.view, &subject);
         light::spawn(world, &hung.view, &subject, Quality::Fine);
         let bundle = light::camera(world, &hung.view);

@@ -14,7 +14,7 @@ use crate::texture::oklab::Oklch;
 use crate::texture::seen;
 
 /// A field that can be shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 pub enum Field {
     /// c, the concentration of the liquid.
     Concentration,

@@ -20,6 +20,40 @@ const PAINT: Color = Color::srgb(0.78, 0.76, 0.72);
 /// How far below the surface of a ball its picture lies, m: cloth lies on it without showing through.
 const BELOW: f64 = 5e-4;
 
+/// What stands around a cloth, as it is seen.
+#[derive(Debug, Clone)]
+pub struct Furniture {
+    /// What the cloth falls on.
+    on: Vec<ColliderSpec>,
+    /// The tables and solids among them.
+    solid: Solid,
+    /// The ball that the cloth is on, if it begins on one: its middle and radius, m.
+    ball: Option<((f64, f64, f64), f64)>,
+    /// Where pegs hold hanging cloth, m.
+    pegs: Vec<Vec3>,
+    /// The height of the ground, m.
+    floor: f64,
+}
+
+impl Furniture {
+    /// Everything that a drape names, with the cloth as it is now.
+    pub fn of(spec: &DrapeSpec, drape: &Drape) -> Self {
+        Furniture {
+            on: spec.on.clone(),
+            solid: drape.colliders().mesh.clone(),
+            ball: match spec.start {
+                Start::Sphere { centre_m, radius_m } => Some((centre_m, radius_m)),
+                _ => None,
+            },
+            pegs: match spec.start {
+                Start::Hanging { .. } => pegs(spec, drape),
+                _ => Vec::new(),
+            },
+            floor: floor_height(spec, drape),
+        }
+    }
+}
+
 /// The height of the ground: the floor that a drape names, or 0, or just below the cloth.
 fn floor_height(spec: &DrapeSpec, drape: &Drape) -> f64 {
     let named = spec.on.iter().filter_map(|thing| match thing {
@@ -31,15 +65,14 @@ fn floor_height(spec: &DrapeSpec, drape: &Drape) -> f64 {
     named.reduce(f64::max).unwrap_or(lowest)
 }
 
-/// Puts everything there that a drape names.
-pub fn spawn(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
-    let floor = floor_height(spec, drape);
+/// Puts everything there.
+pub fn spawn(world: &mut World, furniture: &Furniture) {
+    let floor = furniture.floor;
     world.insert_resource(FloorHeight(floor));
-    let solid = &drape.colliders().mesh;
-    if !solid.triangles.is_empty() {
-        put(world, faceted(solid), WOOD, Transform::IDENTITY);
+    if !furniture.solid.triangles.is_empty() {
+        put(world, faceted(&furniture.solid), WOOD, Transform::IDENTITY);
     }
-    for thing in &spec.on {
+    for thing in &furniture.on {
         match thing {
             ColliderSpec::Ball { centre_m, radius_m } => {
                 ball(world, *centre_m, *radius_m, floor);
@@ -65,11 +98,10 @@ pub fn spawn(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
             ColliderSpec::Floor { .. } | ColliderSpec::Mesh { .. } => {}
         }
     }
-    match spec.start {
-        Start::Hanging { .. } => pegs(world, spec, drape),
-        Start::Sphere { centre_m, radius_m } => ball(world, centre_m, radius_m, floor),
-        Start::Flat { .. } => {}
+    if let Some((centre, radius)) = furniture.ball {
+        ball(world, centre, radius, floor);
     }
+    line(world, &furniture.pegs);
 }
 
 fn place((x, y, z): (f64, f64, f64)) -> Vec3 {
@@ -142,23 +174,24 @@ fn legs(world: &mut World, top: Vec3, floor: f64, (width, depth): (f64, f64)) {
     }
 }
 
-/// A line and pegs, where points of hanging cloth are held.
-fn pegs(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
-    let held: Vec<Vec3> = spec
-        .pins
-        .iter()
-        .zip(&drape.pins)
-        .filter(|(pin, _)| matches!(pin.at, Hold::Point(..)))
+/// Where points of hanging cloth are held.
+fn pegs(spec: &DrapeSpec, drape: &Drape) -> Vec<Vec3> {
+    let pins = spec.pins.iter().zip(&drape.pins);
+    pins.filter(|(pin, _)| matches!(pin.at, Hold::Point(..)))
         .filter_map(|(_, pin)| {
             let all = pin.particles.iter().map(|i| drape.positions()[*i]);
             let count = pin.particles.len() as f64;
             (count > 0.0).then(|| (all.sum::<DVec3>() / count).as_vec3())
         })
-        .collect();
+        .collect()
+}
+
+/// A line with pegs.
+fn line(world: &mut World, held: &[Vec3]) {
     let (Some(first), Some(last)) = (held.first(), held.last()) else {
         return;
     };
-    for peg in &held {
+    for peg in held {
         let at = Transform::from_translation(*peg + Vec3::Y * 0.012);
         put(world, Cuboid::new(0.011, 0.055, 0.014), WOOD, at);
     }
@@ -169,12 +202,8 @@ fn pegs(world: &mut World, spec: &DrapeSpec, drape: &Drape) {
     let middle = 0.5 * (*first + *last) + Vec3::Y * 0.016;
     let turned = Quat::from_rotation_arc(Vec3::Y, along.normalize());
     let line = Cylinder::new(0.0022, along.length() * 6.0);
-    put(
-        world,
-        line,
-        PAINT,
-        Transform::from_translation(middle).with_rotation(turned),
-    );
+    let at = Transform::from_translation(middle).with_rotation(turned);
+    put(world, line, PAINT, at);
 }
 
 /// Faces that meet at a smaller angle than this (as its cosine) look as one round face.

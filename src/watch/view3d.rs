@@ -14,7 +14,7 @@ use crate::studio::cloth::{self, ClothAssets, ClothSide};
 use crate::studio::fine::Fine;
 use crate::studio::light::{self, Ground, Lamp, Quality};
 use crate::studio::mips::Kind;
-use crate::studio::things::Thing;
+use crate::studio::things::{self, Furniture, Thing};
 
 /// Frames that are drawn after a change: what was changed takes one to reach the renderer.
 const FRAMES: u32 = 3;
@@ -35,6 +35,8 @@ pub struct View3d {
     pub subject: Option<Subject>,
     /// Angle between upper and lower edge, degrees.
     pub field_of_view: f64,
+    /// Whether someone has moved the camera.
+    pub moved_by_hand: bool,
 }
 
 /// Where the camera stands: around what it looks at.
@@ -191,6 +193,7 @@ pub fn start(world: &mut World) {
         },
         subject: None,
         field_of_view: view.field_of_view,
+        moved_by_hand: false,
     });
 }
 
@@ -223,6 +226,7 @@ impl View3d {
         };
         eye.distance = distance * fits;
         self.eye = eye;
+        self.moved_by_hand = false;
         self.touch();
     }
 
@@ -233,7 +237,7 @@ impl View3d {
 }
 
 /// Builds everything that the cloth lies on or hangs from, for another cloth.
-pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, hung: &crate::studio::hung::Hung) {
+pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, furniture: &Furniture) {
     type Old = Or<(With<Thing>, With<Lamp>, With<Ground>)>;
     let old: Vec<Entity> = world
         .query_filtered::<Entity, Old>()
@@ -242,7 +246,7 @@ pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, hung: &crat
     for entity in old {
         world.despawn(entity);
     }
-    crate::studio::things::spawn(world, &hung.spec, &hung.drape);
+    things::spawn(world, furniture);
     light::spawn(world, view, &subject, Quality::Fast);
     let colour = light::ground_colour(view);
     world.resource_scope(|world, mut view3d: Mut<View3d>| {
