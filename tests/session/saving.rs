@@ -65,5 +65,5 @@ fn what_is_as_ever_is_left_out() {
     ] {
         assert!(!saved.contains(gone), "{gone}:\n{saved}");
     }
-    assert!(saved.contains("gap: Cells(3.0),"), "{saved}");
+    assert!(saved.contains("gap: Cells(3),"), "{saved}");
 }
