@@ -16,6 +16,7 @@
 //! | [`batik`] | wax and its cracks, and baths one after the other | [`Batik`](batik::stage::Batik) |
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
+//! | [`session`] | a cloth is changed while it is dyed, gone back to, and saved | [`Session`](session::Session) |
 //! | [`record`] | frames are kept | the output folder |
 //! | [`photo`] | photographs of cloth are read: the mask of warp and weft, the colours | [`Mask`](photo::Mask) |
 //!
