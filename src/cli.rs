@@ -38,8 +38,19 @@ Examples:
   dyelapse record seikaiha
   dyelapse record one_drop --scale 8 --out drop
   dyelapse record seikaiha --steps 12500 --frames 100 --video
-  dyelapse record fig9b --fields       also for NumPy: numpy.load('state_00000.npz')")]
+  dyelapse record fig9b --fields       also for NumPy: numpy.load('state_00000.npz')
+  dyelapse record seikaiha_hanging --view draped
+  dyelapse record kasuri --view draped --drape tablecloth --size 1280x960")]
     Record(Record),
+    /// Write the draped cloth of one moment as glTF 2.0, for Blender and other modelling programs
+    ///
+    /// One binary file with both sides of the cloth: mesh, normals, the dyed yarns as picture and their
+    /// relief as normal map. Metres, y up. Needs no graphics driver.
+    #[command(after_help = "\
+Examples:
+  dyelapse export batik_tablecloth
+  dyelapse export kasuri --drape ball --step 2000 --out kasuri.glb")]
+    Export(Export),
     /// Make one labelled picture of several scenarios, or of a figure
     ///
     /// A figure lists panels: scenarios, and what to show of each. Those of the papers come with the
@@ -98,6 +109,23 @@ Examples:
     },
 }
 
+/// How a recording shows the cloth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum View {
+    /// Every cell in its place
+    Flat,
+    /// Hanging, lying, falling: in the light of a studio
+    Draped,
+}
+
+/// Reads `1280x960`.
+fn pixels(text: &str) -> Result<(u32, u32), String> {
+    let wrong = || format!("a size is written as 1280x960, but this is {text}");
+    let (width, height) = text.split_once(['x', '×']).ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse().map_err(|_| wrong());
+    Ok((number(width)?, number(height)?))
+}
+
 /// `dyelapse record`.
 #[derive(Debug, clap::Args)]
 pub struct Record {
@@ -122,10 +150,45 @@ pub struct Record {
     /// Also write height.png and normal.png, the relief of the undyed cloth, for a renderer
     #[arg(long)]
     pub maps: bool,
+    /// Show the cloth flat, or draped in a studio; the latter needs a graphics driver
+    #[arg(long, value_enum, default_value_t = View::Flat)]
+    pub view: View,
+    /// How to drape it: a bundled drape, or a file of one [default: what the scenario says]
+    #[arg(long, value_name = "NAME")]
+    pub drape: Option<String>,
+    /// Pixels of a frame of draped cloth, such as 1280x960 [default: what the scenario says]
+    #[arg(long, value_name = "WxH", value_parser = pixels)]
+    pub size: Option<(u32, u32)>,
     /// Also make video.mp4 of the frames; needs ffmpeg
     #[arg(long)]
     pub video: bool,
     /// Replace the recording that is already in the folder
+    #[arg(long)]
+    pub force: bool,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// `dyelapse export`.
+#[derive(Debug, clap::Args)]
+pub struct Export {
+    /// A scenario file, or the name of a bundled scenario
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: String,
+    /// The file to write [default: NAME.glb]
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// The step of the process [default: its last]
+    #[arg(long, value_name = "N")]
+    pub step: Option<u64>,
+    /// How to drape it: a bundled drape, or a file of one [default: what the scenario says]
+    #[arg(long, value_name = "NAME")]
+    pub drape: Option<String>,
+    /// Pixels along one side of a cell [default: what the scenario says]
+    #[arg(long, value_name = "K")]
+    pub scale: Option<u32>,
+    /// Replace the file if it is there
     #[arg(long)]
     pub force: bool,
     /// Say nothing but errors

@@ -17,6 +17,8 @@
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
 //! | [`session`] | a cloth is changed while it is dyed, gone back to, and saved | [`Session`](session::Session) |
+//! | [`drape`] | the cloth hangs, falls, is creased | [`Drape`](drape::drape::Drape) |
+//! | [`studio`] | draped cloth is seen in the light | — |
 //! | [`record`] | frames are kept | the output folder |
 //! | [`photo`] | photographs of cloth are read: the mask of warp and weft, the colours | [`Mask`](photo::Mask) |
 //!
@@ -56,8 +58,11 @@ pub mod record;
 pub mod scenario;
 pub mod schedule;
 pub mod session;
+pub mod studio;
 pub mod supply;
 pub mod texture;
+#[cfg(feature = "viewer")]
+pub mod watch;
 
 use std::sync::Arc;
 

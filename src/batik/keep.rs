@@ -57,8 +57,7 @@ impl Batik {
             || self.wax.is_none()
         {
             let waxed = self.waxed(kept.begun).map(|(i, wax)| (i, wax.clone()));
-            self.layer = waxed.as_ref().map(|(i, wax)| self.layer_of(wax, *i));
-            self.wax = waxed.map(|(_, wax)| wax);
+            self.lay(waxed);
         }
         self.begun = kept.begun;
         self.fixed.clone_from(&kept.fixed);
@@ -96,16 +95,11 @@ impl Batik {
         Some(sweeps)
     }
 
-    /// Takes over what a scenario says of how its batik is seen: its colours, its side, what is shown.
+    /// Takes over what a scenario says of how its batik is seen: its colours, what is shown.
     pub(crate) fn look_as(&mut self, scenario: &Scenario) {
         let Some(spec) = &scenario.batik else { return };
         (self.show, self.show_wax) = (spec.show, spec.show_wax);
         self.full = darkest_at(scenario);
         self.mixture = mixture(spec, self.full);
-        if self.side != scenario.look.side {
-            self.side = scenario.look.side;
-            let waxed = self.waxed(self.begun).map(|(i, wax)| (i, wax.clone()));
-            self.layer = waxed.map(|(i, wax)| self.layer_of(&wax, i));
-        }
     }
 }

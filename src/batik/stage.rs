@@ -27,7 +27,7 @@ use crate::schedule::{
     DyeFrame, DyeSet, DyeStep, FrameSet, Prepare, PrepareSet, ProcessClock, TheExperiment,
 };
 use crate::supply::SupplySystems;
-use crate::texture::{DrawDye, Picture, Rgb, Texture, darkest_at, to_rgb};
+use crate::texture::{DrawDye, OtherSide, Picture, Rgb, Texture, darkest_at, to_rgb};
 
 /// Batik, where the scenario has a recipe for it.
 pub struct BatikPlugin;
@@ -76,8 +76,10 @@ pub struct Batik {
     /// The actions that have begun; one more once the last has ended.
     pub(super) begun: usize,
     pub(super) wax: Option<Arc<Wax>>,
-    /// The wax as it is seen.
-    pub(super) layer: Option<Arc<WaxLayer>>,
+    /// The action that laid the wax on.
+    pub(super) waxed_by: usize,
+    /// The wax as it is seen from either side, face first; made when a side is first looked at.
+    pub(super) layers: [Option<WaxLayer>; 2],
     /// What is fixed of earlier dyes, `(layer, y, x)`.
     pub(super) fixed: Vec<Arc<Vec<f32>>>,
     pub(super) mixture: Mixture,
@@ -91,7 +93,6 @@ pub struct Batik {
     pub(super) booked: f64,
     pub(super) show: BatikShow,
     pub(super) show_wax: bool,
-    pub(super) side: Side,
     pub(super) seed: u64,
 }
 
@@ -121,7 +122,8 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         recipe,
         begun: 0,
         wax: None,
-        layer: None,
+        waxed_by: 0,
+        layers: [None, None],
         fixed: Vec::new(),
         mixture: mixture(spec, darkest_at(scenario)),
         full: darkest_at(scenario),
@@ -130,7 +132,6 @@ fn prepare(mut commands: Commands, cloth: Res<Cloth>, experiment: Res<TheExperim
         booked: 0.0,
         show: spec.show,
         show_wax: spec.show_wax,
-        side: scenario.look.side,
         seed: scenario.seed,
     });
 }
@@ -184,11 +185,11 @@ impl Batik {
         baths.into_iter().flatten()
     }
 
-    /// The wax that action `i` laid on, as it is seen.
-    pub(super) fn layer_of(&self, wax: &Wax, i: usize) -> Arc<WaxLayer> {
-        let seed = self.seed.wrapping_add(i as u64);
-        let seen = as_seen(&wax.drawing, self.side);
-        Arc::new(WaxLayer::new(&seen, WaxLook::default(), seed))
+    /// Lays wax on, with the action that does so, or takes all off.
+    pub(super) fn lay(&mut self, wax: Option<(usize, Arc<Wax>)>) {
+        self.layers = [None, None];
+        self.waxed_by = wax.as_ref().map_or(0, |(by, _)| *by);
+        self.wax = wax.map(|(_, wax)| wax);
     }
 
     /// Whether something is to begin or to end at a step.
@@ -209,12 +210,10 @@ impl Batik {
                 None => {}
                 Some(Action::Wax(wax)) => {
                     let wax = wax.clone();
-                    self.layer = Some(self.layer_of(&wax, self.begun));
-                    self.wax = Some(wax);
+                    self.lay(Some((self.begun, wax)));
                 }
                 Some(Action::Boil) => {
-                    self.wax = None;
-                    self.layer = None;
+                    self.lay(None);
                 }
                 Some(Action::Dye { bath, .. }) => {
                     let (nx, ny) = (vat.cloth.grid.nx, vat.cloth.grid.ny);
@@ -311,9 +310,9 @@ fn draw(
     texture: Res<Texture>,
     experiment: Res<TheExperiment>,
     cloth: Res<Cloth>,
-    free: Res<FreeDye>,
-    bound: Res<BoundDye>,
+    (free, bound): (Res<FreeDye>, Res<BoundDye>),
     mut picture: ResMut<Picture>,
+    other: Option<ResMut<OtherSide>>,
 ) {
     let full = darkest_at(&experiment.scenario);
     if let Some(spec) = experiment
@@ -326,16 +325,6 @@ fn draw(
         batik.mixture = mixture(spec, full);
         batik.full = full;
     }
-    let map = match (batik.show, &batik.wax) {
-        (BatikShow::Cloth, _) => None,
-        (_, None) => Some(&Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0)),
-        (BatikShow::Drawing, Some(wax)) => Some(&wax.drawing),
-        (BatikShow::Permeation, Some(wax)) => Some(&wax.permeation),
-    };
-    if let Some(map) = map {
-        texture.draw_map(&as_seen(map, batik.side), &mut picture);
-        return;
-    }
     let now = match batik.exchange {
         Some(_) => {
             // Before the first bath nothing is bound, and there is no field of it.
@@ -344,17 +333,45 @@ fn draw(
         }
         None => texture.amounts(&cloth, &free, &bound),
     };
-    let colour = |i: usize| -> Rgb {
-        let mut amounts = [0.0; MOST_BATHS + 1];
-        for (amount, fixed) in amounts.iter_mut().zip(&batik.fixed) {
-            *amount = fixed[i];
+    batik.draw_side(&cloth, &texture, &now, &mut picture);
+    if let Some(mut other) = other {
+        let OtherSide { texture, picture } = &mut *other;
+        batik.draw_side(&cloth, texture, &now, picture);
+    }
+}
+
+impl Batik {
+    /// Draws the side of the cloth that a texture is for; `now` is the dye of the running bath.
+    fn draw_side(&mut self, cloth: &Cloth, texture: &Texture, now: &[f32], picture: &mut Picture) {
+        let side = texture.side;
+        let map = match (self.show, &self.wax) {
+            (BatikShow::Cloth, _) => None,
+            (_, None) => Some(&Raster::uniform(cloth.grid.nx, cloth.grid.ny, 1.0)),
+            (BatikShow::Drawing, Some(wax)) => Some(&wax.drawing),
+            (BatikShow::Permeation, Some(wax)) => Some(&wax.permeation),
+        };
+        if let Some(map) = map {
+            texture.draw_map(&as_seen(map, side), picture);
+            return;
         }
-        amounts[batik.fixed.len()] = now[i];
-        batik.mixture.colour(&amounts)
-    };
-    texture.draw_colours(&cloth, colour, &mut picture);
-    if let (true, Some(layer)) = (batik.show_wax, &batik.layer) {
-        let Picture { width, height, rgb } = &mut *picture;
+        let colour = |i: usize| -> Rgb {
+            let mut amounts = [0.0; MOST_BATHS + 1];
+            for (amount, fixed) in amounts.iter_mut().zip(&self.fixed) {
+                *amount = fixed[i];
+            }
+            amounts[self.fixed.len()] = now[i];
+            self.mixture.colour(&amounts)
+        };
+        texture.draw_colours(cloth, colour, picture);
+        let (true, Some(wax)) = (self.show_wax, &self.wax) else {
+            return;
+        };
+        let layer = self.layers[side as usize].get_or_insert_with(|| {
+            let seen = as_seen(&wax.drawing, side);
+            let seed = self.seed.wrapping_add(self.waxed_by as u64);
+            WaxLayer::new(&seen, WaxLook::default(), seed)
+        });
+        let Picture { width, height, rgb } = picture;
         let pixels = rgb.as_chunks::<3>().0;
         let cloth = Colours::of(*width, *height, |y, x| {
             pixels[y * *width + x].map(|channel| f32::from(channel) / 255.0)

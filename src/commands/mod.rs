@@ -1,6 +1,7 @@
 //! What each command does.
 
 mod check;
+mod export;
 mod list;
 mod palette;
 mod progress;
@@ -29,6 +30,7 @@ const INTERRUPTED: u8 = 130;
 pub fn run(cli: Cli) -> ExitCode {
     match cli.command {
         Command::Record(arguments) => record::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Sheet(arguments) => sheet::run(&arguments),
         Command::Check { scenarios } => check::run(&scenarios),
         Command::List => list::run(),

@@ -1,5 +1,7 @@
 //! `dyelapse record`.
 
+use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,9 +9,11 @@ use std::time::Instant;
 
 use super::progress::Progress;
 use super::{BAD_INPUT, INTERRUPTED, complain, failed, say};
-use crate::cli::Record;
-use dyelapse::record::{Options, default_folder, record};
-use dyelapse::scenario::Experiment;
+use crate::cli::{self, Record};
+use dyelapse::drape::scenes;
+use dyelapse::record::{Options, View, default_folder, record};
+use dyelapse::scenario::check::Checker;
+use dyelapse::scenario::{Draping, Experiment, unknown_drape};
 
 pub fn run(arguments: &Record) -> ExitCode {
     let experiment = match Experiment::load(&arguments.scenario) {
@@ -18,6 +22,10 @@ pub fn run(arguments: &Record) -> ExitCode {
             complain(&why);
             return ExitCode::from(BAD_INPUT);
         }
+    };
+    let drape = match arguments.drape.as_deref().map(draping).transpose() {
+        Ok(drape) => drape,
+        Err(why) => return failed(&why, true),
     };
     let options = Options {
         out: arguments
@@ -30,6 +38,12 @@ pub fn run(arguments: &Record) -> ExitCode {
         fields: arguments.fields,
         maps: arguments.maps,
         video: arguments.video,
+        view: match arguments.view {
+            cli::View::Flat => View::Flat,
+            cli::View::Draped => View::Draped,
+        },
+        drape,
+        pixels: arguments.size,
         force: arguments.force,
     };
 
@@ -74,4 +88,20 @@ pub fn run(arguments: &Record) -> ExitCode {
         }
         Err(why) => failed(&why, why.is_bad_input()),
     }
+}
+
+/// What `--drape` means: a bundled drape, or a file of one.
+pub fn draping(name: &str) -> Result<Draping, String> {
+    let path = Path::new(name);
+    if !path.is_file() {
+        return match scenes::text(name) {
+            Some(_) => Ok(Draping::Bundled(name.into())),
+            None => Err(format!("--drape: {}", unknown_drape(name))),
+        };
+    }
+    let text = fs::read_to_string(path).map_err(|why| format!("cannot read {name}: {why}"))?;
+    let spec = scenes::parse(&text).map_err(|why| format!("{name}:{why}"))?;
+    let checked = spec.check(&Checker::root());
+    checked.map_err(|problem| format!("{name}: {problem}"))?;
+    Ok(Draping::Own(Box::new(spec)))
 }

@@ -79,12 +79,14 @@ impl DrapeSpec {
             thickness: 1e-3 * solver.apart_mm,
             friction: measured.friction,
             itself: solver.itself,
+            locks_at: measured.locks_at(size.0.max(size.1)),
         };
         let sheet = Sheet {
             links,
             creases,
             mass,
             topology,
+            area,
         };
         let pins = self.pins(size, &sheet);
         let mut drape = Drape::new(settings, sheet, x, colliders);

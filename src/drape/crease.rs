@@ -68,9 +68,7 @@ pub fn press(links: &mut Links, creases: &[Crease]) -> Vec<CreaseLink> {
                 for x in 0..links.particles.0 {
                     let link = press_one(links, crease, (x, y), direction);
                     if let Some(link) = link {
-                        for plane in [K_B, C_B] {
-                            *links.stiffness.get_mut(x, y, plane + direction) = 0.0;
-                        }
+                        link.take_from(links);
                         pressed.push(link);
                     }
                 }
@@ -167,6 +165,15 @@ impl Fold {
 }
 
 impl CreaseLink {
+    /// Takes the link that it replaces out of `links`.
+    pub fn take_from(&self, links: &mut Links) {
+        for plane in [K_B, C_B] {
+            *links
+                .stiffness
+                .get_mut(self.at.0, self.at.1, plane + self.direction) = 0.0;
+        }
+    }
+
     /// a, m, b, p and q on the grid. p and q lie across so that N points out of the front; at the edge
     /// of the cloth, the particle between stands for the one that is missing.
     fn places(&self, (nx, ny): (usize, usize)) -> [(usize, usize); 5] {

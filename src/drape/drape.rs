@@ -4,7 +4,7 @@
 //! or [`explicit`](super::explicit)); the filter shortens or turns the moves of those that would pass through
 //! something ([`filter`](super::collide::filter)); the state takes what is left.
 
-use bevy::math::DVec3;
+use bevy::math::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -15,14 +15,18 @@ use super::collide::near::{Motion, with_colliders, with_itself};
 use super::collide::topology::Topology;
 use super::collide::tree::Tree;
 use super::contact::{Anchor, FASTEST_OUT, Rule, STIFFNESS, Touch};
-use super::crease::CreaseLink;
+use super::crease::{Crease, CreaseLink, press};
 use super::explicit::{Explicit, Pulls};
+use super::hand::Hand;
 use super::implicit::Implicit;
 use super::lattice::Links;
+use super::limit::{LOCKED, limit};
+use super::material::MaterialSpec;
 use super::pcg::Solved;
 use super::pins::Pin;
 use super::rows::Rows;
 use super::surface::Surface;
+use super::weights::assemble;
 use super::wind::{AIR_DENSITY, Wind};
 
 /// How time is stepped.
@@ -59,6 +63,8 @@ pub struct Settings {
     pub friction: f64,
     /// Whether the cloth collides with itself.
     pub itself: bool,
+    /// The strain at which yarns lock; implicit steps do not go beyond it.
+    pub locks_at: f64,
 }
 
 impl Default for Settings {
@@ -73,6 +79,7 @@ impl Default for Settings {
             thickness: 1e-3,
             friction: 0.3,
             itself: true,
+            locks_at: LOCKED,
         }
     }
 }
@@ -88,6 +95,8 @@ pub struct Sheet {
     pub mass: Rows,
     /// How its particles make a surface.
     pub topology: Topology,
+    /// How much cloth there is in every cell, m², a row of `particles.0 − 1` at a time.
+    pub area: Vec<f64>,
 }
 
 /// Why a cloth cannot go on.
@@ -127,6 +136,8 @@ pub(super) struct State {
     pub last_v: Vec<DVec3>,
     /// The length of the last step; none if there is nothing to go on from.
     pub last_step: Option<f64>,
+    /// Which particles were stopped or turned in the last step, so that BDF2 has nothing to go on from.
+    pub is_fresh: Vec<bool>,
     /// What each particle rests on.
     pub anchors: Vec<Option<Anchor>>,
 }
@@ -137,6 +148,7 @@ pub(super) struct Given<'a> {
     pub sheet: &'a Sheet,
     pub colliders: &'a Colliders,
     pub wind: &'a Wind,
+    pub hands: &'a [Hand],
     pub state: &'a State,
     pub pairs: &'a [Pair],
     pub time: f64,
@@ -168,6 +180,8 @@ pub struct Drape {
     pub wind: Wind,
     /// What holds it.
     pub pins: Vec<Pin>,
+    /// Hands that draw at it; implicit steps heed them.
+    pub hands: Vec<Hand>,
     /// Seconds since it began.
     pub time: f64,
     sheet: Sheet,
@@ -178,6 +192,7 @@ pub struct Drape {
     /// What was near when the last step ended.
     pairs: Vec<Pair>,
     tree: Tree,
+    triangles: Vec<[u32; 3]>,
     implicit: Implicit,
 }
 
@@ -190,14 +205,17 @@ impl Drape {
             settings,
             wind: Wind::still(),
             pins: Vec::new(),
+            hands: Vec::new(),
             time: 0.0,
             tree: Tree::new(particles, sheet.links.spacing),
             implicit: Implicit::new(&sheet),
+            triangles: sheet.topology.triangles(),
             state: State {
                 v: none.clone(),
                 last_move: none.clone(),
                 last_v: none,
                 last_step: None,
+                is_fresh: vec![false; x.len()],
                 anchors: vec![None; x.len()],
                 x,
             },
@@ -237,6 +255,11 @@ impl Drape {
     /// What it falls on.
     pub fn colliders(&self) -> &Colliders {
         &self.colliders
+    }
+
+    /// The triangles of its surface, by particles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
     }
 
     /// The surface as it is now.
@@ -356,6 +379,7 @@ impl Drape {
             sheet: &self.sheet,
             colliders: &self.colliders,
             wind: &self.wind,
+            hands: &self.hands,
             state: &self.state,
             pairs: &self.pairs,
             time: self.time,
@@ -379,6 +403,20 @@ impl Drape {
             });
         }
         let mut changed = vec![false; mobility.len()];
+        if matches!(
+            self.settings.integrator,
+            Integrator::BackwardEuler | Integrator::Bdf2
+        ) {
+            let (links, most) = (&self.sheet.links, self.settings.locks_at);
+            limit(
+                links,
+                most,
+                &mobility,
+                &self.state.x,
+                &mut proposed.moves,
+                &mut changed,
+            );
+        }
         let (filtered, pairs) = self.filter(&mobility, covered, &mut proposed.moves, &mut changed);
         self.take(proposed, changed, &mobility, step)
             .map(|solved| StepReport {
@@ -398,6 +436,9 @@ impl Drape {
     ) -> (Filtered, usize) {
         let from = self.corners();
         let exact = self.colliders.exact.clone();
+        let triangles = std::mem::take(&mut self.triangles);
+        let (one, two) = self.sheet.links.spacing;
+        let (leg, shorter) = (one.max(two), one.min(two));
         let bodies = Bodies {
             particles: self.state.x.len(),
             from: &from,
@@ -406,6 +447,11 @@ impl Drape {
             friction: self.settings.friction,
             exact: &exact,
             covered,
+            triangles: &triangles,
+            longest: [
+                (1.05 * leg).powi(2),
+                (1.1 * self.sheet.links.length(2)).powi(2),
+            ],
         };
         moves.resize(from.len(), DVec3::ZERO);
         for i in 0..bodies.particles {
@@ -416,11 +462,13 @@ impl Drape {
         };
         let mut pairs = self.near(&from, &ends(moves));
         let near = pairs.len();
-        let slack = 0.5 * self.settings.thickness;
+        // Little enough, too, that what was smooth remains so: see `tree`.
+        let slack = (0.5 * self.settings.thickness).min(0.04 * shorter);
         let filtered = filter(bodies, &mut pairs, moves, changed, slack, |moves| {
             self.near(&from, &ends(moves))
         });
         self.pairs = pairs;
+        self.triangles = triangles;
         (filtered, near)
     }
 
@@ -467,16 +515,127 @@ impl Drape {
         }
         state.anchors = anchors;
         for i in 0..state.x.len() {
-            // What was stopped has no past for BDF2 to go on from.
-            let v = if changed[i] { moves[i] / step } else { v[i] };
-            state.last_v[i] = if changed[i] { v } else { state.v[i] };
-            state.v[i] = v;
+            state.last_v[i] = state.v[i];
+            state.v[i] = if changed[i] { moves[i] / step } else { v[i] };
+            state.is_fresh[i] = changed[i];
             state.last_move[i] = moves[i];
             state.x[i] += moves[i];
         }
         state.last_step = Some(step);
         self.time += step;
         Ok(solved)
+    }
+}
+
+/// All that a cloth needs to come back to a moment, and go on from it as it did.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    time: f64,
+    state: State,
+    pins: Vec<Pin>,
+    taken: Vec<Option<Vec<DVec3>>>,
+    hands: Vec<Hand>,
+    wind: Wind,
+    sheet: Sheet,
+    settings: Settings,
+    guesses: [Rows<f32>; 2],
+    pairs: Vec<Pair>,
+}
+
+impl Drape {
+    /// What it takes to come back to this moment.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            time: self.time,
+            state: self.state.clone(),
+            pins: self.pins.clone(),
+            taken: self.taken.clone(),
+            hands: self.hands.clone(),
+            wind: self.wind.clone(),
+            sheet: self.sheet.clone(),
+            settings: self.settings.clone(),
+            guesses: self.implicit.guesses.clone(),
+            pairs: self.pairs.clone(),
+        }
+    }
+
+    /// Goes to a moment of the same cloth.
+    pub fn restore(&mut self, to: &Snapshot) {
+        let to = to.clone();
+        self.time = to.time;
+        self.state = to.state;
+        self.pins = to.pins;
+        self.taken = to.taken;
+        self.hands = to.hands;
+        self.wind = to.wind;
+        self.sheet = to.sheet;
+        self.settings = to.settings;
+        self.implicit.guesses = to.guesses;
+        self.pairs = to.pairs;
+    }
+
+    /// Fixes a particle where it is, from now on.
+    pub fn pin(&mut self, particle: usize) {
+        if particle < self.state.x.len() {
+            self.pins.push(Pin {
+                particles: vec![particle],
+                from: self.time,
+                until: f64::INFINITY,
+                path: Vec::new(),
+            });
+        }
+    }
+
+    /// Takes every pin off a particle; other particles of the same pins stay held.
+    pub fn unpin(&mut self, particle: usize) {
+        self.taken.resize(self.pins.len(), None);
+        for (pin, taken) in self.pins.iter_mut().zip(&mut self.taken) {
+            let Some(at) = pin.particles.iter().position(|i| *i == particle) else {
+                continue;
+            };
+            pin.particles.remove(at);
+            if let Some(taken) = taken {
+                taken.remove(at);
+            }
+        }
+    }
+
+    /// Presses a crease between two places on the cloth (shares of its width and height), folding by
+    /// `angle` radians, positive where the front is outside; `stiffness` in N·m/(m·rad). Returns how many
+    /// links it crosses: none where it lies on an older crease.
+    pub fn add_crease(&mut self, from: DVec2, to: DVec2, angle: f64, stiffness: f64) -> usize {
+        let links = &mut self.sheet.links;
+        let (nx, ny) = links.particles;
+        let size = DVec2::new((nx - 1) as f64, (ny - 1) as f64) * DVec2::from(links.spacing);
+        let crease = Crease {
+            from: from * size,
+            to: to * size,
+            angle,
+            stiffness,
+        };
+        if from == to {
+            return 0;
+        }
+        let pressed = press(links, &[crease]);
+        let count = pressed.len();
+        self.sheet.creases.extend(pressed);
+        count
+    }
+
+    /// Makes the cloth of another material, on the same grid and where it is. Creases stay as stiff as they
+    /// were pressed.
+    pub fn set_material(&mut self, material: &MaterialSpec) {
+        let Sheet { links, area, .. } = &self.sheet;
+        let (particles, spacing) = (links.particles, links.spacing);
+        let (mass, mut links) = assemble(&material.in_si(), particles, spacing, area);
+        for crease in &self.sheet.creases {
+            crease.take_from(&mut links);
+        }
+        let size = (particles.0 as f64 * spacing.0).max(particles.1 as f64 * spacing.1);
+        self.settings.friction = material.friction;
+        self.settings.locks_at = material.locks_at(size);
+        self.sheet.mass = mass;
+        self.sheet.links = links;
     }
 }
 

@@ -13,7 +13,7 @@ use super::collide::colliders::{Colliders, Exact};
 use super::collide::mesh::{Mesh, MeshTree};
 
 /// The sign of the volume of a tetrahedron: −1, 0 or 1.
-fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
+pub fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> i8 {
     let coordinate = |p: DVec3| Coord3D {
         x: p.x,
         y: p.y,

@@ -20,7 +20,7 @@ use super::collide::distance::{Pair, combine};
 use super::contact::{Added, Contact, Rule, Touch, product};
 use super::drape::{Given, Integrator, Proposed, Sheet};
 use super::pcg::Work;
-use super::response::Response;
+use super::response::{Ahead, Response};
 use super::rows::{Rows, each, each2};
 use super::system::System;
 use super::wind::drag;
@@ -34,15 +34,21 @@ pub(super) struct Implicit {
     /// Positions, and velocities, about which forces are linear.
     x: Rows,
     v: Rows,
+    /// The moves that are about to be made.
+    coming: Rows,
     /// α·f + M·Δ₀.
     pull: Rows,
     u: Rows<f32>,
     /// The last two moves.
-    guesses: [Rows<f32>; 2],
+    pub guesses: [Rows<f32>; 2],
     solver: Work,
     yarns: Yarns,
     contacts: Vec<Contact>,
 }
+
+/// α of BDF2 as a share of backward Euler's: a particle whose past says nothing, as it was stopped by
+/// something, takes a step of backward Euler among others that take one of BDF2.
+const FRESH: f64 = 4.0 / 9.0;
 
 /// α, β and whether the step is BDF2's.
 #[derive(Clone, Copy)]
@@ -93,6 +99,7 @@ impl Implicit {
             own: Rows::zero(nx, ny, 6),
             x: three.clone(),
             v: three.clone(),
+            coming: three.clone(),
             pull: three,
             u: three_single.clone(),
             guesses: [three_single.clone(), three_single],
@@ -109,6 +116,7 @@ impl Implicit {
         let (state, sheet) = (given.state, given.sheet);
         self.take_links(given, scheme);
         self.take_inertia_and_air(given, scheme);
+        self.take_hands(given, scheme);
         let touches = self.take_contacts(given, scheme);
         let (mass, pull) = (&sheet.mass, &self.pull);
         each(&mut self.solver.r, |y, r| {
@@ -160,13 +168,27 @@ impl Implicit {
             self.x.set_particle(i, state.x[i] + *lead);
             let v = scheme.velocity(*lead, state.last_move[i], given.step);
             self.v.set_particle(i, v);
+            let held = given.mobility[i] <= 0.0;
+            self.coming
+                .set_particle(i, if held { DVec3::ZERO } else { about(given, i) });
         }
         for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
             *single = *double as f32;
         }
-        let coefficients = Some((scheme.alpha, scheme.beta));
+        if scheme.bdf2 {
+            // BDF2 has α = 4h²/9, backward Euler h²: divided by that, both are one symmetric system.
+            let nx = self.mass.nx;
+            for i in (0..state.x.len()).filter(|i| state.is_fresh[*i]) {
+                *self.mass.get_mut(i % nx, i / nx, 0) *= FRESH as f32;
+            }
+        }
+        let ahead = Ahead {
+            alpha: scheme.alpha,
+            beta: scheme.beta,
+            moves: &self.coming,
+        };
         self.response
-            .compute(&sheet.links, &self.x, &self.v, coefficients);
+            .compute(&sheet.links, &self.x, &self.v, Some(ahead));
         self.pull.all_mut().fill(0.0);
         self.response.add_forces(&mut self.pull);
         for crease in &sheet.creases {
@@ -185,11 +207,13 @@ impl Implicit {
             for x in 0..nx {
                 let i = y * nx + x;
                 let m = mass.get(x, y, 0);
-                let inert = if scheme.bdf2 {
+                let inert = if !scheme.bdf2 {
+                    h * state.v[i]
+                } else if state.is_fresh[i] {
+                    FRESH * h * state.v[i]
+                } else {
                     let v = 8.0 * state.v[i] - 2.0 * state.last_v[i];
                     state.last_move[i] / 3.0 + (h / 9.0) * v
-                } else {
-                    h * state.v[i]
                 };
                 let mut force = DVec3::new(px[x], py[x], pz[x]) + m * given.settings.gravity;
                 let mut block = [0.0; 6];
@@ -210,6 +234,28 @@ impl Implicit {
         });
     }
 
+    /// Adds the springs by which hands draw.
+    fn take_hands(&mut self, given: &Given, scheme: Scheme) {
+        let nx = self.x.nx;
+        for hand in given.hands {
+            let i = hand.particle;
+            if given.mobility[i] <= 0.0 {
+                continue;
+            }
+            let (x, y) = (i % nx, i / nx);
+            // v as it will be is v + (change of v by the move): linear, so taken at no move here.
+            let v = self.v.vector(x, y);
+            let (force, stiffness, damping) =
+                hand.pull(self.x.vector(x, y), v, 1.0 / given.mobility[i]);
+            let pull = self.pull.vector(x, y) + scheme.alpha * force;
+            self.pull.set_vector(x, y, pull);
+            for c in 0..3 {
+                let own = scheme.alpha * stiffness + scheme.beta * damping;
+                *self.own.get_mut(x, y, c) += own as f32;
+            }
+        }
+    }
+
     /// Adds contacts; returns those of particles with what does not move.
     fn take_contacts(&mut self, given: &Given, scheme: Scheme) -> Vec<Touch> {
         let state = given.state;
@@ -220,11 +266,12 @@ impl Implicit {
             alpha: scheme.alpha,
             step: given.step,
         };
-        // Where the particle will about go: on as before.
-        let guess = |i: usize| match state.last_step {
-            _ if i >= count => DVec3::ZERO,
-            Some(_) => state.last_move[i],
-            None => state.v[i] * given.step,
+        let guess = |i: usize| {
+            if i < count {
+                about(given, i)
+            } else {
+                DVec3::ZERO
+            }
         };
         let corner = |i: usize| match state.x.get(i) {
             Some(x) => *x,
@@ -266,12 +313,47 @@ impl Implicit {
                 added.pair(*pair, corner, guess, |i| given.mobility[i], rule);
             }
         }
+        drop_the_same_face(&mut touches, &state.x);
         for touch in &touches {
             let i = touch.particle as usize;
             let mass = 1.0 / given.mobility[i];
             added.touch(*touch, mass, (state.x[i], guess(i)), state.anchors[i], rule);
         }
         touches
+    }
+}
+
+/// Leaves of the touches of a particle with the triangles of one flat face only the nearest: the closest
+/// points of the others lie on their edges, and would push along the face.
+fn drop_the_same_face(touches: &mut Vec<Touch>, x: &[DVec3]) {
+    touches.sort_by(|a, b| {
+        a.particle
+            .cmp(&b.particle)
+            .then(a.distance.total_cmp(&b.distance))
+    });
+    let mut kept: Vec<Touch> = Vec::with_capacity(touches.len());
+    for touch in touches.iter() {
+        let at = |touch: &Touch| x[touch.particle as usize] - touch.distance * touch.normal;
+        let is_same = |nearer: &&Touch| {
+            let along = at(touch) - at(nearer);
+            along.dot(nearer.normal).abs() <= 1e-6 * nearer.distance
+        };
+        let before = kept
+            .iter()
+            .rev()
+            .take_while(|nearer| nearer.particle == touch.particle);
+        if before.filter(is_same).count() == 0 {
+            kept.push(*touch);
+        }
+    }
+    *touches = kept;
+}
+
+/// Where a particle will about go: on as before.
+fn about(given: &Given, i: usize) -> DVec3 {
+    match given.state.last_step {
+        Some(last) => given.state.last_move[i] * (given.step / last),
+        None => given.state.v[i] * given.step,
     }
 }
 

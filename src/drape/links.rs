@@ -89,6 +89,19 @@ pub fn stretch(r: f64, length: f64, k: f64) -> Pull {
     }
 }
 
+/// A type 1 link as an implicit step sees it, which will about end at the distance `then`.
+///
+/// One that is slack but comes taut within the step acts already: linear about r < L it would not be
+/// there at all, and whatever moves fast would overshoot it by the length of a step.
+#[inline(always)]
+pub fn stretch_ahead(r: f64, then: f64, length: f64, k: f64) -> Pull {
+    let on = if r.max(then) > length { k } else { 0.0 };
+    Pull {
+        force: on * (r - length),
+        stiffness: on,
+    }
+}
+
 /// A link of Lander's model: a spring of stiffness `k` (N/m) both ways.
 #[inline(always)]
 pub fn spring(r: f64, length: f64, k: f64) -> Pull {

@@ -18,6 +18,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::limit::locks_at;
 use super::weights::Measured;
 use crate::scenario::check::{Checker, Problem};
 
@@ -97,7 +98,7 @@ impl Material {
             shear,
             bending: (1e-6 * bending.0, 1e-6 * bending.1),
             friction,
-            damping: 5e-5,
+            damping: 2e-6,
         }
     }
 
@@ -125,6 +126,14 @@ impl Material {
 }
 
 impl MaterialSpec {
+    /// The strain at which its yarns [lock](super::limit) in a cloth `size` metres long.
+    pub fn locks_at(&self, size: f64) -> f64 {
+        locks_at(
+            9.81e-3 * self.weight * size,
+            self.stretch.0.min(self.stretch.1),
+        )
+    }
+
     /// In SI units, weft first as along a row of particles.
     pub fn in_si(&self) -> Measured {
         Measured {

@@ -12,7 +12,7 @@
 //! under tension where there is only one that bends, and folds form far too slowly.
 
 use super::lattice::{C_B, DIRECTIONS, K, K_B, Links, Model};
-use super::links::{Pull, bend, spring, stretch};
+use super::links::{Pull, bend, spring, stretch, stretch_ahead};
 use super::rows::{Rows, each, each2};
 
 /// Planes of a symmetric 3×3 matrix: xx, yy, zz, xy, xz, yz.
@@ -32,6 +32,17 @@ pub struct Response {
     pub bend_blocks: Rows<f32>,
 }
 
+/// The implicit step that blocks are for.
+#[derive(Debug, Clone, Copy)]
+pub struct Ahead<'a> {
+    /// α, s².
+    pub alpha: f64,
+    /// β, s.
+    pub beta: f64,
+    /// The moves that particles will about make, m.
+    pub moves: &'a Rows,
+}
+
 /// The first plane of the pushes.
 const PUSH: usize = 12;
 
@@ -46,14 +57,14 @@ impl Response {
         }
     }
 
-    /// Computes what `links` do at positions `x` and velocities `v`; blocks too for `Some((α, β))`.
-    pub fn compute(&mut self, links: &Links, x: &Rows, v: &Rows, blocks: Option<(f64, f64)>) {
-        self.compute_bend(links, x, blocks);
-        self.compute_stretch(links, x, v, blocks);
+    /// Computes what `links` do at positions `x` and velocities `v`; blocks too for an implicit step.
+    pub fn compute(&mut self, links: &Links, x: &Rows, v: &Rows, ahead: Option<Ahead>) {
+        self.compute_bend(links, x, ahead.map(|ahead| ahead.alpha));
+        self.compute_stretch(links, x, v, ahead);
     }
 
-    fn compute_bend(&mut self, links: &Links, x: &Rows, blocks: Option<(f64, f64)>) {
-        let alpha = blocks.map_or(0.0, |(alpha, _)| alpha);
+    fn compute_bend(&mut self, links: &Links, x: &Rows, blocks: Option<f64>) {
+        let alpha = blocks.unwrap_or(0.0);
         each2(&mut self.bend, &mut self.bend_blocks, |y, out, matrices| {
             let (mut out, mut matrices) = (out.planes(), matrices.planes());
             let (force, push) = (out.take::<12>(), out.take::<4>());
@@ -79,7 +90,7 @@ impl Response {
         });
     }
 
-    fn compute_stretch(&mut self, links: &Links, x: &Rows, v: &Rows, blocks: Option<(f64, f64)>) {
+    fn compute_stretch(&mut self, links: &Links, x: &Rows, v: &Rows, ahead: Option<Ahead>) {
         let bend = &self.bend;
         each2(
             &mut self.stretch,
@@ -89,26 +100,30 @@ impl Response {
                 for (direction, (dx, dy)) in DIRECTIONS.into_iter().enumerate() {
                     let row = y as isize;
                     let [k] = links.stiffness.lines(row, K + direction, 0);
-                    let [ahead] = bend.lines(row, PUSH + direction, 0);
+                    let [front] = bend.lines(row, PUSH + direction, 0);
                     let [behind] = bend.lines(row - dy, PUSH + direction, -dx);
                     let ends = Ends::new(x, y, direction, 1);
                     let speeds = Ends::new(v, y, direction, 1);
                     let law = Stretch {
                         length: links.length(direction),
                         damping: links.damping[direction],
-                        alpha: blocks.map_or(0.0, |(alpha, _)| alpha),
-                        beta: blocks.map_or(0.0, |(_, beta)| beta),
+                        alpha: ahead.map_or(0.0, |ahead| ahead.alpha),
+                        beta: ahead.map_or(0.0, |ahead| ahead.beta),
                     };
-                    let (force, block, pushes) = (out.take(), matrices.take(), [ahead, behind]);
-                    match (links.model, blocks.is_some()) {
+                    // Without a step ahead nothing is looked up in it.
+                    let moves = ahead.map_or(x, |ahead| ahead.moves);
+                    let coming = Ends::new(moves, y, direction, 1);
+                    let (force, block, pushes) = (out.take(), matrices.take(), [front, behind]);
+                    let ends = [ends, speeds, coming];
+                    match (links.model, ahead.is_some()) {
                         (Model::Choi, true) => {
-                            stretch_row::<true, true>(ends, speeds, k, pushes, law, force, block);
+                            stretch_row::<true, true>(ends, k, pushes, law, force, block);
                         }
                         (Model::Choi, false) => {
-                            stretch_row::<true, false>(ends, speeds, k, pushes, law, force, block);
+                            stretch_row::<true, false>(ends, k, pushes, law, force, block);
                         }
                         (Model::Lander, _) => {
-                            stretch_row::<false, true>(ends, speeds, k, pushes, law, force, block);
+                            stretch_row::<false, true>(ends, k, pushes, law, force, block);
                         }
                     }
                 }
@@ -282,8 +297,7 @@ struct Stretch {
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn stretch_row<const CHOI: bool, const BLOCKS_TOO: bool>(
-    ends: Ends,
-    speeds: Ends,
+    [ends, speeds, coming]: [Ends; 3],
     k: &[f64],
     pushes: [&[f64]; 2],
     law: Stretch,
@@ -291,7 +305,7 @@ fn stretch_row<const CHOI: bool, const BLOCKS_TOO: bool>(
     block: [&mut [f32]; BLOCK],
 ) {
     let n = k.len();
-    let (ends, speeds) = (ends.cut(n), speeds.cut(n));
+    let (ends, speeds, coming) = (ends.cut(n), speeds.cut(n), coming.cut(n));
     let pushes = [&pushes[0][..n], &pushes[1][..n]];
     let [fx, fy, fz] = force;
     let force = [&mut fx[..n], &mut fy[..n], &mut fz[..n]];
@@ -306,7 +320,11 @@ fn stretch_row<const CHOI: bool, const BLOCKS_TOO: bool>(
     ];
     for i in 0..n {
         let (r, direction) = polar(ends.across(i));
-        let pull = if CHOI {
+        let pull = if CHOI && BLOCKS_TOO {
+            let by = coming.across(i);
+            let closing = by[0] * direction[0] + by[1] * direction[1] + by[2] * direction[2];
+            stretch_ahead(r, r + closing, law.length, k[i])
+        } else if CHOI {
             stretch(r, law.length, k[i])
         } else {
             spring(r, law.length, k[i])

@@ -62,6 +62,7 @@ pub fn assemble(
         }
     }
     let moduli = Moduli::new(measured, particles, spacing);
+    let stiffest = MOST_RAISED * measured.buckling * moduli.stretch[0].max(moduli.stretch[1]);
     for direction in 0..4 {
         let length = links.length(direction);
         for hops in [1, 2] {
@@ -106,16 +107,42 @@ pub fn assemble(
                         moduli.stretch[direction] * area / (length * length);
                 } else {
                     let length = 2.0 * length;
-                    *stiffness.get_mut(x, y, K_B + direction) =
-                        2.0 * moduli.bending[direction] * area / length;
-                    *stiffness.get_mut(x, y, C_B + direction) =
+                    let k_b = 2.0 * moduli.bending[direction] * area / length;
+                    let c_b =
                         measured.buckling * moduli.stretch[direction] * area / (length * length);
+                    *stiffness.get_mut(x, y, K_B + direction) = k_b;
+                    *stiffness.get_mut(x, y, C_B + direction) = c_b.max(
+                        buckles_soon(measured, k_b, length)
+                            .min(stiffest * area / (length * length)),
+                    );
                 }
             }
         }
     }
     (mass, links)
 }
+
+/// c_b of a link that buckles long before it is as bent as hanging cloth is.
+///
+/// A link that has not buckled is a spring against compression, and as good as does not bend. It buckles at
+/// 1 − r/L = 12k_b/(c_b·L³), an arc of curvature κ has 1 − r/L = (κL)²/24. So c_b about k, as the paper
+/// has it, would make stiff cloth on a fine grid limp; here κ is [`EARLY`] of the curvature ∛(weight/B)
+/// at which weight and bending are in balance.
+fn buckles_soon(measured: &Measured, k_b: f64, length: f64) -> f64 {
+    let bending = (measured.bending.0 * measured.bending.1).sqrt();
+    if bending <= 0.0 {
+        return 0.0;
+    }
+    let curvature = EARLY * libm::cbrt(9.81 * measured.weight / bending);
+    288.0 * k_b / (curvature * curvature * length.powi(5))
+}
+
+/// The share of its balanced curvature at which cloth has buckled.
+const EARLY: f64 = 0.3;
+
+/// c_b is raised to no more than this many times that of a yarn: a very stiff link that buckles shakes what
+/// it joins.
+const MOST_RAISED: f64 = 10.0;
 
 /// Energy densities by direction: ½·stretch·ε², bending·κ².
 struct Moduli {

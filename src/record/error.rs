@@ -7,6 +7,9 @@ use thiserror::Error;
 
 use crate::memory::MemoryError;
 use crate::scenario::LARGEST_SCALE;
+use crate::studio::hung::HungError;
+#[cfg(feature = "viewer")]
+use crate::studio::offscreen::NoFrame;
 
 /// Why a recording could not be made.
 #[derive(Debug, Error)]
@@ -92,6 +95,22 @@ pub enum RecordError {
         /// The reason.
         why: io::Error,
     },
+    /// The cloth cannot be draped.
+    #[error("the cloth cannot be draped: {0}")]
+    Draped(#[from] HungError),
+    /// Draped cloth cannot be drawn.
+    #[cfg(feature = "viewer")]
+    #[error(transparent)]
+    NoFrame(#[from] NoFrame),
+    /// Draped cloth was asked for, and the program was built without it.
+    #[error(
+        "this dyelapse was built without the feature `viewer`, and cannot draw draped cloth: build it \
+         with `cargo build --release`, or leave out --view draped"
+    )]
+    NoViewer,
+    /// It was stopped before there was a frame.
+    #[error("stopped before the first frame")]
+    Stopped,
     /// ffmpeg failed.
     #[error("the frames are all there, but ffmpeg could not make a film of them: {0}")]
     Ffmpeg(String),

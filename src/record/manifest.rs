@@ -29,6 +29,9 @@ pub struct Manifest {
     pub steps: u64,
     /// Δt, the length of a step in hours.
     pub step_h: f64,
+    /// Whether the frames show the cloth draped.
+    #[serde(default)]
+    pub draped: bool,
     /// Pixels of a frame, across and down.
     pub pixels: (usize, usize),
     /// Pixels along one side of a cell.

@@ -4,7 +4,10 @@
 //! and on request the fields behind the pictures and a film. A figure is one picture of several
 //! cloths.
 
+#[cfg_attr(not(feature = "viewer"), path = "not_draped.rs")]
+mod draped;
 mod error;
+mod export;
 mod fields;
 mod figure;
 mod folder;
@@ -19,6 +22,7 @@ mod writer;
 use std::path::{Path, PathBuf};
 
 pub use error::RecordError;
+pub use export::{Export, export};
 pub use figure::{PictureFile, draw_figure, draw_panels};
 pub use manifest::{Frame, Manifest};
 pub use plan::{Plan, Stop};
@@ -27,11 +31,25 @@ pub(crate) use sheet::LARGEST_TILE;
 pub use video::ffmpeg_is_there;
 
 use crate::memory::{self, Use};
-use crate::scenario::{Experiment, LARGEST_SCALE, Origin};
+use crate::scenario::check::Checker;
+use crate::scenario::{Draping, Experiment, LARGEST_SCALE, Origin};
 use crate::schedule::advance_to;
+use crate::studio::hung::HungError;
 use crate::texture::Scale;
 use crate::{DyeingPlugins, look, prepare};
+use draped::Draped;
 use folder::Folder;
+use recorder::Seen;
+
+/// How a recording shows the cloth.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum View {
+    /// Flat, every cell in its place.
+    #[default]
+    Flat,
+    /// Draped, in the studio.
+    Draped,
+}
 
 /// What to record, where it differs from what the scenario says.
 #[derive(Debug, Clone, Default)]
@@ -48,6 +66,12 @@ pub struct Options {
     pub fields: bool,
     /// Whether to write the relief of the undyed cloth, as maps of height and normals.
     pub maps: bool,
+    /// Whether frames show the cloth flat or draped.
+    pub view: View,
+    /// How to drape it, where not as the scenario says.
+    pub drape: Option<Draping>,
+    /// Pixels of a frame of draped cloth, across and down, where not as the scenario says.
+    pub pixels: Option<(u32, u32)>,
     /// Whether to make a film of the frames.
     pub video: bool,
     /// Whether to replace a recording that is already in the folder.
@@ -94,6 +118,10 @@ pub fn record(
         return Err(RecordError::OwnFolder(own));
     }
     let (nx, ny) = scenario.cloth.cells();
+    let mut view = scenario.view.clone();
+    if let Some(pixels) = options.pixels {
+        view.pixels = pixels;
+    }
     let manifest = Manifest {
         dyelapse: env!("CARGO_PKG_VERSION").into(),
         title: scenario.title.clone(),
@@ -103,7 +131,11 @@ pub fn record(
         seed: scenario.seed,
         steps: plan.steps,
         step_h: scenario.process.step_h,
-        pixels: (nx * scale as usize, ny * scale as usize),
+        draped: options.view == View::Draped,
+        pixels: match options.view {
+            View::Flat => (nx * scale as usize, ny * scale as usize),
+            View::Draped => (view.pixels.0 as usize, view.pixels.1 as usize),
+        },
         pixels_per_cell: scale,
         frames_planned: plan.frames(),
         fields,
@@ -112,6 +144,11 @@ pub fn record(
         complete: false,
         frames: Vec::new(),
     };
+    if options.view == View::Draped {
+        view.check(&Checker::root().field("view"))
+            .map_err(HungError::from)?;
+        Draped::check()?;
+    }
     let folder = Folder::claim(&options.out, options.force, &manifest)?;
     let recorder = Recorder::start(experiment, folder.clone(), manifest)?;
 
@@ -119,24 +156,53 @@ pub fn record(
     app.add_plugins((DyeingPlugins, RecordPlugin))
         .insert_resource(Scale(scale))
         .insert_resource(recorder);
+    if options.view == View::Draped {
+        Draped::add_plugins(&mut app)?;
+    }
     prepare(&mut app, experiment.clone());
-    let world = app.world_mut();
     if options.maps {
-        maps::write(&folder, world.resource(), scenario, scale as usize)?;
+        maps::write(&folder, app.world().resource(), scenario, scale as usize)?;
+    }
+    let mut draped = None;
+    let mut complete = true;
+    if options.view == View::Draped {
+        let drape = options.drape.as_ref();
+        let studio = Draped::start(&mut app, experiment, view, drape, &mut || go_on(0));
+        complete = !matches!(studio, Err(RecordError::Stopped));
+        if complete {
+            draped = Some(studio?);
+        }
     }
 
-    let mut complete = true;
     for stop in &plan.stops {
-        if !advance_to(world, stop.step, &mut go_on) {
-            complete = false;
+        complete = complete && advance_to(app.world_mut(), stop.step, &mut go_on);
+        if !complete {
             break;
         }
+        if let Some(draped) = &mut draped {
+            look(app.world_mut());
+            let share = stop.step as f64 / plan.steps.max(1) as f64;
+            let seen = match draped.see(&mut app, share, &mut || go_on(stop.step)) {
+                Err(RecordError::Stopped) => {
+                    complete = false;
+                    break;
+                }
+                seen => seen?,
+            };
+            app.world_mut().insert_resource(Seen(seen));
+        }
+        let world = app.world_mut();
         world.resource_mut::<Recorder>().expect(*stop);
-        look(world);
+        match draped {
+            // It has been looked at, and is the same.
+            Some(_) => world.run_system_cached(recorder::keep).unwrap_or_default(),
+            None => look(world),
+        }
         if world.resource::<Recorder>().has_failed() {
             break;
         }
     }
+    let world = app.world_mut();
     let steps = world.resource::<crate::schedule::ProcessClock>().step;
     let Some(recorder) = world.remove_resource::<Recorder>() else {
         return Err(RecordError::Lost);

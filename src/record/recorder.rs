@@ -153,16 +153,21 @@ pub(super) struct Dyed<'w> {
     pub supplies: ResMut<'w, Supplies>,
 }
 
-fn keep(
+/// The cloth as a recording shows it, where that is not flat.
+#[derive(Resource)]
+pub(super) struct Seen(pub Picture);
+
+pub(super) fn keep(
     mut recorder: ResMut<Recorder>,
     clock: Res<ProcessClock>,
     ledger: Res<Ledger>,
-    picture: Res<Picture>,
+    (flat, seen): (Res<Picture>, Option<Res<Seen>>),
     mut dyed: Dyed,
 ) {
     let Some(stop) = recorder.expected.take() else {
         return;
     };
+    let picture = seen.as_ref().map_or(&*flat, |seen| &seen.0);
     // 3 · 0.1 h is 0.3 h and not 0.30000000000000004 h.
     let hours = rounded(clock.hours(), 12);
     if stop.sheet {
@@ -171,7 +176,7 @@ fn keep(
             Some(batik) => batik.told(clock.step, scenario.process.step_h),
             None => moment(clock.step, hours),
         };
-        recorder.sheet.add(&picture, label);
+        recorder.sheet.add(picture, label);
     }
     let Some(frame) = stop.frame else {
         return;

@@ -7,6 +7,7 @@ mod batik;
 pub(crate) mod beside;
 pub mod check;
 mod chemistry;
+mod draping;
 mod error;
 mod experiment;
 mod fabric;
@@ -17,12 +18,14 @@ mod locate;
 mod look;
 mod process;
 pub mod units;
+mod view;
 
 use serde::{Deserialize, Serialize};
 
 pub use batik::{BatikShow, BatikSolver, BatikSpec, BatikStep, MOST_BATHS, Reading};
 pub use beside::Beside;
 pub use chemistry::{AdsorptionSpec, Diffusivity, DyeSpec, Isotherm};
+pub use draping::{Draping, unknown as unknown_drape};
 pub(crate) use error::nearest;
 pub use error::{ScenarioError, SourceError};
 pub use experiment::{Experiment, Origin};
@@ -35,6 +38,7 @@ pub use look::{
 };
 pub use process::{MOST_FRAMES, ProcessSpec, RecordSpec, Solver, SupplySpec};
 pub use units::{Length, Time};
+pub use view::{CameraSpec, LARGEST_VIEW, Standing, ViewSpec};
 
 use crate::cloth::Weave;
 use crate::pattern::Pattern;
@@ -70,6 +74,12 @@ pub struct Scenario {
     /// How the cloth is drawn.
     #[serde(default)]
     pub look: LookSpec,
+    /// How the cloth hangs or lies: the name of a bundled drape, or a drape of its own.
+    #[serde(default)]
+    pub drape: Option<Draping>,
+    /// How the draped cloth is seen.
+    #[serde(default)]
+    pub view: ViewSpec,
     /// What a recording keeps.
     #[serde(default)]
     pub record: RecordSpec,
@@ -100,6 +110,10 @@ impl Scenario {
             self.check_beside_batik(batik, &at)?;
         }
         self.look.check(&at.field("look"))?;
+        if let Some(drape) = &self.drape {
+            drape.check(&at.field("drape"))?;
+        }
+        self.view.check(&at.field("view"))?;
         self.record.check(&at.field("record"), &self.process)
     }
 

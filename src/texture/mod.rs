@@ -12,6 +12,7 @@ mod noise;
 pub mod oklab;
 mod relief;
 mod shade;
+mod sides;
 mod taps;
 mod yarn;
 
@@ -24,6 +25,7 @@ pub use colour::{Hsv, Ramp, Rgb, between, to_hsv, to_rgb};
 pub use relief::Relief;
 use shade::Shade;
 pub use shade::seen;
+pub use sides::{OtherSide, see_both_sides};
 use taps::Tap;
 
 use crate::adsorption::BoundDye;
@@ -59,7 +61,8 @@ pub struct Scale(pub u32);
 pub struct Texture {
     /// Pixels along one side of a cell.
     pub scale: usize,
-    side: Side,
+    /// The side that is drawn.
+    pub side: Side,
     /// Layers and shade of every pixel, row by row.
     shade: Vec<Shade>,
     /// The ellipse weave, where the cloth is drawn as one.
@@ -403,6 +406,9 @@ pub fn change_look(world: &mut World, look: LookSpec) {
     let texture = Texture::new(cloth, &experiment.scenario, &experiment.images, scale, side);
     world.insert_resource(texture);
     world.insert_resource(TheExperiment(Arc::new(experiment)));
+    if world.contains_resource::<OtherSide>() {
+        see_both_sides(world);
+    }
 }
 
 fn prepare(
@@ -425,6 +431,11 @@ fn draw(
     free: Res<FreeDye>,
     bound: Res<BoundDye>,
     mut picture: ResMut<Picture>,
+    other: Option<ResMut<OtherSide>>,
 ) {
     texture.draw(&cloth, &free, &bound, &mut picture);
+    if let Some(mut other) = other {
+        let OtherSide { texture, picture } = &mut *other;
+        texture.draw(&cloth, &free, &bound, picture);
+    }
 }

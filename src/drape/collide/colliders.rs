@@ -4,8 +4,11 @@
 //! triangle whose corners are at least √(R² + c²) from the centre of a ball of radius R, and that a
 //! circle of radius c covers, nowhere comes nearer than R. Everything else is a [`Mesh`].
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use bevy::math::DVec3;
 
+use super::super::exact::side;
 use super::boxes::Box3;
 use super::mesh::{Mesh, MeshTree};
 
@@ -111,8 +114,9 @@ pub struct Colliders {
 impl Colliders {
     /// Colliders of these shapes.
     pub fn new(exact: Vec<Exact>, mesh: Mesh) -> Self {
-        let mut corners = vec![false; mesh.corners.len()];
-        let mut edges = std::collections::BTreeSet::new();
+        let flat = flat_parts(&mesh);
+        let mut corners = flat.corners;
+        let mut edges = flat.edges;
         let owned = mesh.triangles.iter().map(|t| {
             std::array::from_fn(|i| {
                 let (a, b) = (t[i], t[(i + 1) % 3]);
@@ -148,4 +152,43 @@ impl Colliders {
             std::array::from_fn(|i| owned[i].1.then_some([t[i], t[(i + 1) % 3]])),
         )
     }
+}
+
+/// Corners and edges inside a flat face.
+///
+/// Cloth whose particles keep off the face keeps off them too, so they need not be met. Whether a face is
+/// flat is decided exactly.
+struct Flat {
+    corners: Vec<bool>,
+    edges: BTreeSet<(u32, u32)>,
+}
+
+fn flat_parts(mesh: &Mesh) -> Flat {
+    let mut beside: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
+    for (number, t) in mesh.triangles.iter().enumerate() {
+        for i in 0..3 {
+            let (a, b) = (t[i], t[(i + 1) % 3]);
+            beside.entry((a.min(b), a.max(b))).or_default().push(number);
+        }
+    }
+    let is_flat = |numbers: &[usize]| {
+        let [one, two] = numbers else {
+            return false;
+        };
+        let corners = mesh.triangles[*one].map(|i| mesh.corners[i as usize]);
+        let others = mesh.triangles[*two].map(|i| mesh.corners[i as usize]);
+        let in_plane = |p: DVec3| side(corners[0], corners[1], corners[2], p) == 0;
+        others.into_iter().all(in_plane) && mesh.normal(*one).dot(mesh.normal(*two)) > 0.0
+    };
+    let mut corners = vec![true; mesh.corners.len()];
+    let mut edges = BTreeSet::new();
+    for (edge, numbers) in beside {
+        if is_flat(&numbers) {
+            edges.insert(edge);
+        } else {
+            corners[edge.0 as usize] = false;
+            corners[edge.1 as usize] = false;
+        }
+    }
+    Flat { corners, edges }
 }

@@ -11,7 +11,7 @@
 use bevy::math::DVec3;
 use rayon::prelude::*;
 
-use super::ccd::time_of_impact;
+use super::ccd::{time_of_impact, time_to_ball};
 use super::colliders::Exact;
 use super::distance::{Pair, combine};
 
@@ -35,6 +35,11 @@ pub struct Bodies<'a> {
     pub exact: &'a [Exact],
     /// The radius of a circle that covers any triangle, m.
     pub covered: f64,
+    /// The cloth's triangles.
+    pub triangles: &'a [[u32; 3]],
+    /// Squares of the longest sides of a triangle that such a circle surely covers: along and across the
+    /// grid, and the diagonal, m².
+    pub longest: [f64; 2],
 }
 
 /// What the filter had to do.
@@ -75,7 +80,7 @@ pub fn filter(
     let mut hits = touching(bodies, pairs, moves);
     for _ in 0..ROUNDS {
         if hits.is_empty() {
-            return done;
+            break;
         }
         for (_, pair) in &hits {
             done.impacts += usize::from(impact(bodies, *pair, moves, changed));
@@ -88,18 +93,27 @@ pub fn filter(
         refresh(moves, &mut base, pairs);
         hits = touching(bodies, pairs, moves);
     }
+    let mut over_balls = meeting_balls(bodies, moves);
+    if hits.is_empty() && over_balls.is_empty() {
+        return done;
+    }
     let mut zones = Zones::new(moves.len());
     let mut shortened = vec![false; moves.len()];
     let mut patience = 10;
-    while !hits.is_empty() {
-        for (_, pair) in &hits {
-            zones.join(pair.corners().into_iter().filter(|i| bodies.is_cloth(*i)));
+    while !hits.is_empty() || !over_balls.is_empty() {
+        let of_pairs = hits.iter().map(|(time, pair)| (*time, pair.corners()));
+        let of_balls = over_balls
+            .iter()
+            .map(|(time, [a, b, c])| (*time, [*a, *a, *b, *c]));
+        let all: Vec<(f64, [u32; 4])> = of_pairs.chain(of_balls).collect();
+        for (_, corners) in &all {
+            zones.join(corners.iter().copied().filter(|i| bodies.is_cloth(*i)));
         }
         // How far each zone may go: the shortest of its times.
         let mut most = vec![1.0_f64; moves.len()];
-        for (time, pair) in &hits {
-            for corner in pair.corners().into_iter().filter(|i| bodies.is_cloth(*i)) {
-                let root = zones.root(corner as usize);
+        for (time, corners) in &all {
+            for corner in corners.iter().filter(|i| bodies.is_cloth(**i)) {
+                let root = zones.root(*corner as usize);
                 // A zone that hardly moves is stopped, and in the end every one, so that this ends.
                 let stops = *time < 0.05 || patience == 0;
                 let time = if stops { 0.0 } else { 0.9 * time };
@@ -117,6 +131,7 @@ pub fn filter(
         }
         refresh(moves, &mut base, pairs);
         hits = touching(bodies, pairs, moves);
+        over_balls = meeting_balls(bodies, moves);
     }
     done.shortened = shortened.iter().filter(|s| **s).count();
     done
@@ -162,6 +177,50 @@ fn touching(bodies: Bodies, pairs: &[Pair], moves: &[DVec3]) -> Vec<(f64, Pair)>
     let mut found: Vec<_> = found.into_iter().flatten().collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     found
+}
+
+/// Triangles, stretched so far that their corners do not keep them off a ball, that would meet one; with
+/// the time up to which they may go.
+fn meeting_balls(bodies: Bodies, moves: &[DVec3]) -> Vec<(f64, [u32; 3])> {
+    let balls: Vec<(DVec3, f64)> = bodies
+        .exact
+        .iter()
+        .filter_map(|exact| match *exact {
+            Exact::Ball { centre, radius } => Some((centre, radius)),
+            Exact::Floor(_) => None,
+        })
+        .collect();
+    if balls.is_empty() {
+        return Vec::new();
+    }
+    let [side, diagonal] = bodies.longest;
+    let is_covered = |[a, b, c]: [DVec3; 3]| {
+        let mut sides = [a, b, c].map(|_| 0.0);
+        for (i, (p, q)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+            sides[i] = (q - p).length_squared();
+        }
+        let longest = sides[0].max(sides[1]).max(sides[2]);
+        let over = sides.iter().filter(|s| **s > side).count();
+        longest <= diagonal && over <= 1
+    };
+    let meet = |t: &[u32; 3]| {
+        let from = t.map(|i| bodies.from[i as usize]);
+        let by = t.map(|i| moves[i as usize]);
+        let to = [from[0] + by[0], from[1] + by[1], from[2] + by[2]];
+        if is_covered(from) && is_covered(to) {
+            return None;
+        }
+        let times = balls
+            .iter()
+            .filter_map(|ball| time_to_ball(*ball, from, by));
+        let first = times.fold(f64::INFINITY, f64::min);
+        first.is_finite().then_some((first, *t))
+    };
+    let chunks = bodies.triangles.par_chunks(1024);
+    let found: Vec<Vec<(f64, [u32; 3])>> = chunks
+        .map(|part| part.iter().filter_map(meet).collect())
+        .collect();
+    found.into_iter().flatten().collect()
 }
 
 /// Pushes a pair apart, so that it ends the step on the side where it began. Returns whether it had to.

@@ -132,7 +132,11 @@ pub fn with_colliders(
             for cell in cells {
                 let bounds = tree.cell(*cell).grown(margin);
                 let mut fresh = true;
+                let corners = topology.corners(*cell);
                 colliders.visit(&bounds, |triangle| {
+                    if is_beside(colliders, triangle, &corners, motion, margin) {
+                        return;
+                    }
                     if std::mem::take(&mut fresh) {
                         a.of_cell(topology.parts(*cell), motion);
                     }
@@ -144,4 +148,27 @@ pub fn with_colliders(
         })
         .collect();
     found.into_iter().flatten().collect()
+}
+
+/// Whether a cell stays further than `margin` from a triangle on the outer side of its plane, or of an
+/// upright plane on one of its sides. Boxes alone say little about large triangles.
+fn is_beside(
+    colliders: &Colliders,
+    triangle: u32,
+    cell: &[u32; 4],
+    motion: Motion,
+    margin: f64,
+) -> bool {
+    let t = colliders.mesh.triangles[triangle as usize].map(|i| colliders.mesh.corners[i as usize]);
+    let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    let outside = |at: DVec3, way: DVec3| {
+        let way = way.normalize_or_zero();
+        cell.iter().all(|i| {
+            let i = *i as usize;
+            (motion.from[i] - at).dot(way) > margin && (motion.to[i] - at).dot(way) > margin
+        })
+    };
+    outside(t[0], normal)
+        || outside(t[0], -normal)
+        || (0..3).any(|i| outside(t[i], (t[(i + 1) % 3] - t[i]).cross(normal)))
 }

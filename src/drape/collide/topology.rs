@@ -49,6 +49,14 @@ impl Topology {
         left(x, y) || y > 0 && left(x, y - 1)
     }
 
+    /// The corners of a cell; those of the last column and row come twice.
+    pub fn corners(&self, cell: u32) -> [u32; 4] {
+        let (nx, ny) = (self.particles.0 as u32, self.particles.1 as u32);
+        let right = u32::from(cell % nx + 1 < nx);
+        let below = if cell / nx + 1 < ny { nx } else { 0 };
+        [cell, cell + right, cell + below, cell + right + below]
+    }
+
     /// What belongs to a cell.
     pub fn parts(&self, cell: u32) -> CellParts {
         let nx = self.particles.0 as u32;

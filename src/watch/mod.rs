@@ -1,0 +1,3 @@
+//! The window in which dyeing is watched, and played with.
+
+pub mod panel;
