@@ -16,6 +16,7 @@
 //! | [`batik`] | wax and its cracks, and baths one after the other | [`Batik`](batik::stage::Batik) |
 //! | [`ledger`] | dye is accounted for | [`Ledger`](ledger::Ledger) |
 //! | [`texture`] | dye is seen on yarns | [`Picture`](texture::Picture) |
+//! | [`session`] | a cloth is changed while it is dyed, gone back to, and saved | [`Session`](session::Session) |
 //! | [`drape`] | the cloth hangs, falls, is creased | [`Drape`](drape::drape::Drape) |
 //! | [`studio`] | draped cloth is seen in the light | — |
 //! | [`record`] | frames are kept | the output folder |

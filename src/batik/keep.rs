@@ -32,6 +32,11 @@ impl KeptBatik {
 }
 
 impl Batik {
+    /// Whether dye moves in sweeps.
+    pub(crate) fn sweeps(&self) -> bool {
+        self.exchange.is_some()
+    }
+
     /// What is needed to go on from here.
     pub(crate) fn keep(&self) -> KeptBatik {
         KeptBatik {

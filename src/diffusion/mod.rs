@@ -14,7 +14,7 @@ mod steps;
 mod tiles;
 
 use bevy::ecs::change_detection::Tick;
-use bevy::ecs::system::SystemChangeTick;
+use bevy::ecs::system::{SystemChangeTick, SystemParam};
 use bevy::prelude::*;
 use rayon::prelude::*;
 
@@ -331,18 +331,25 @@ fn one_step(
     std::mem::swap(concentration, next);
 }
 
+/// All dye in the cloth.
+#[derive(SystemParam)]
+struct Dyed<'w> {
+    dye: ResMut<'w, FreeDye>,
+    bound: ResMut<'w, BoundDye>,
+}
+
 /// As many steps as the clock asks for and one leap covers. What binds meanwhile binds here, for
 /// it belongs to the same change.
 fn leap(
     mut leap: ResMut<Leap>,
     mut clock: ResMut<ProcessClock>,
-    mut dye: ResMut<FreeDye>,
-    mut bound: ResMut<BoundDye>,
+    dyed: Dyed,
     supplies: Res<Supplies>,
     mut ledger: ResMut<Ledger>,
     experiment: Res<TheExperiment>,
     ticks: SystemChangeTick,
 ) {
+    let Dyed { mut dye, mut bound } = dyed;
     // Whoever else changed the dye (supply, a stage of one's own) began a new process.
     let now = ticks.this_run();
     let changed = changed_since(&dye, &leap, now)

@@ -113,6 +113,11 @@ impl History {
         true
     }
 
+    /// What was done, the first first.
+    pub fn labels(&self) -> impl Iterator<Item = &str> {
+        self.past.iter().map(|edit| edit.label.as_str())
+    }
+
     /// Edits that can be undone.
     pub fn len(&self) -> usize {
         self.past.len()

@@ -18,7 +18,8 @@
 //!
 //! A session works on a world with [`DyeingPlugins`](crate::DyeingPlugins), and never takes longer
 //! than one run of the process after it has been told to stop; where it has not arrived yet the same
-//! call goes on.
+//! call goes on. [`Session::show`] is when the picture is drawn: what is put back or computed on the way is
+//! seen only then.
 
 pub mod course;
 pub mod effect;
@@ -196,11 +197,12 @@ impl Session {
         Ok(self.apply(world, experiment))
     }
 
-    /// Paints a stroke, at the step where the session is or is going to.
+    /// Paints a whole stroke, at the step where the session is or is going to. (While the brush is still
+    /// down a window shows the stroke over the picture: every call is an edit of its own.)
     ///
     /// # Errors
-    /// A [`ScenarioError`] where that is not possible: dye on a batik by sweeps, or on the inside of a
-    /// recipe; nothing has changed then.
+    /// A [`ScenarioError`] where that is not possible, such as dye or resist on a batik by sweeps; nothing
+    /// has changed then.
     pub fn paint(
         &mut self,
         world: &mut World,

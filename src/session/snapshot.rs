@@ -39,6 +39,7 @@ pub struct Snapshot {
     /// Whether the dye was changed after the solver did its work.
     disturbed: bool,
     depends: u64,
+    effort: u64,
 }
 
 impl Snapshot {
@@ -64,6 +65,7 @@ impl Snapshot {
             batik: world.get_resource::<Batik>().map(Batik::keep),
             disturbed: is_disturbed(world),
             depends,
+            effort: effort(world),
         }
     }
 
@@ -123,10 +125,9 @@ impl Snapshot {
         self.leap.as_ref().map_or(0, KeptLeap::depends)
     }
 
-    /// How much had to be computed up to this moment: evaluations of the rate, scans, or steps.
+    /// How much had to be computed up to this moment: see [`effort`].
     pub fn effort(&self) -> u64 {
-        let evaluations = self.leap.as_ref().map(KeptLeap::evaluations);
-        evaluations.unwrap_or_else(|| steps_done(&self.clock))
+        self.effort
     }
 
     /// Bytes of memory, at the most.
@@ -147,16 +148,19 @@ impl Snapshot {
     }
 }
 
-/// How much had to be computed up to this moment of a world: see [`Snapshot::effort`].
-pub fn effort(world: &World) -> u64 {
-    match world.get_resource::<Leap>() {
-        Some(leap) => leap.evaluations,
-        None => steps_done(world.resource::<ProcessClock>()),
-    }
-}
+/// As much as a scan takes, in units of an explicit step of the same cloth.
+const STEPS_A_SCAN: u64 = 8;
 
-fn steps_done(clock: &ProcessClock) -> u64 {
-    clock.step * u64::from(clock.splits) + u64::from(clock.part)
+/// How much had to be computed up to this moment of a world: evaluations of the rate, steps, or what
+/// scans are worth.
+pub fn effort(world: &World) -> u64 {
+    if let Some(leap) = world.get_resource::<Leap>() {
+        return leap.evaluations;
+    }
+    let clock = world.resource::<ProcessClock>();
+    let scans = world.get_resource::<Batik>().is_some_and(Batik::sweeps);
+    let each = if scans { STEPS_A_SCAN } else { 1 };
+    each * (clock.step * u64::from(clock.splits) + u64::from(clock.part))
 }
 
 /// Whether a moment is at rest: between steps, and at the end of a leap. Such a moment takes the least

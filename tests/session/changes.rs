@@ -44,6 +44,9 @@ fn what_is_not_seen_needs_nothing_and_a_look_only_a_look() {
         s.title = "another".into();
     });
     assert_eq!(both, Effect::LookOnly);
+    let hung = dyelapse::scenario::Draping::Bundled("hanging".into());
+    assert_eq!(after(|s| s.drape = Some(hung.clone())), Effect::DrapeOnly);
+    assert_eq!(after(|s| s.view.field_of_view = 40.0), Effect::DrapeOnly);
 }
 
 #[test]

@@ -13,6 +13,7 @@ fn texts() -> Vec<(String, String)> {
             (radius: Cells(9), hardness: 0.1, path: [(0.1, 0.2), (0.15, 0.25), (0.2, 0.3),
             (0.25, 0.35), (0.3, 0.4), (0.35, 0.45), (0.4, 0.5), (0.45, 0.55), (0.5, 0.6)])]),
             at: Steps(7))],
+        drape: \"tablecloth\", view: (field_of_view: 40, light: (10, 20)),
         resist: Union([Ramp(), Strokes([(radius: Mm(1), path: [(0.5, 0.5)])])]),
         process: (duration: Steps(20)))";
     let own = samples()
@@ -65,5 +66,5 @@ fn what_is_as_ever_is_left_out() {
     ] {
         assert!(!saved.contains(gone), "{gone}:\n{saved}");
     }
-    assert!(saved.contains("gap: Cells(3.0),"), "{saved}");
+    assert!(saved.contains("gap: Cells(3),"), "{saved}");
 }

@@ -191,3 +191,43 @@ fn a_session_that_may_do_little_at_a_time_gets_there_all_the_same() {
     assert!(session.go_to(world, u64::MAX, |_| true));
     assert_eq!(session.target(), 20_000);
 }
+
+#[test]
+fn a_recording_of_what_is_saved_has_the_pictures_that_were_seen() {
+    let sample = &samples()[2];
+    let (mut app, mut session) = open(sample);
+    let world = app.world_mut();
+    assert!(session.go_to(world, 1000, |_| true));
+    session.paint(world, Paint::Dye(0.9), stroke(0.3)).unwrap();
+    assert!(session.go_to(world, 1700, |_| true));
+    session.paint(world, Paint::Resist, stroke(0.7)).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("saved.ron");
+    std::fs::write(&file, session.experiment().text).unwrap();
+    let experiment = Experiment::load(file.to_str().unwrap()).unwrap();
+    let out = folder.path().join("recording");
+    let options = dyelapse::record::Options {
+        out: out.clone(),
+        frames: Some(5),
+        ..Default::default()
+    };
+    let recording = dyelapse::record::record(&experiment, &options, |_| true).unwrap();
+    assert_eq!(recording.frames, 5);
+    let manifest = std::fs::read_to_string(out.join("manifest.ron")).unwrap_or_default();
+    let mut frames: Vec<_> = std::fs::read_dir(&out)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            let name = path.file_name().and_then(|name| name.to_str());
+            name.is_some_and(|name| name.starts_with("frame") && name.ends_with(".png"))
+        })
+        .collect();
+    frames.sort();
+    assert_eq!(frames.len(), 5, "{manifest}");
+    // Seen in another order than they were recorded in.
+    for i in [2, 4, 0, 3, 1] {
+        assert!(session.go_to(world, 1000 * i, |_| true));
+        let frame = image::open(&frames[i as usize]).unwrap().to_rgb8();
+        assert!(frame.into_raw() == world.resource::<Picture>().rgb, "{i}");
+    }
+}

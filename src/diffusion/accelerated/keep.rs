@@ -44,11 +44,6 @@ impl KeptLeap {
             + size_of::<Self>()
     }
 
-    /// Evaluations of the rate up to here.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
     /// The step from which on something may happen otherwise without anything being otherwise here.
     pub fn depends(&self) -> u64 {
         self.depends

@@ -2,16 +2,24 @@
 
 use super::tree::Node;
 
+/// The owner of what is in a list: it has no field of its own, and says only what it is.
+pub(super) const ITEM: &str = "[]";
+
+/// Fields of which nothing is to be said beside what pattern they hold.
+const SAID_BY_KIND: [&str; 3] = ["of", "cut", "pattern"];
+
 /// The comment of a field, by the name of what it belongs to: a section (`warp`), or a variant (`Hold`).
 pub(super) fn comment(owner: &str, field: &str, value: &Node) -> Option<String> {
+    let kind = of_kind(value);
+    if owner == ITEM || (kind.is_some() && SAID_BY_KIND.contains(&field)) {
+        return kind.map(Into::into);
+    }
     let found = FIELDS.iter().find(|(of, name, _)| {
         *name == field && (of.is_empty() || of.split(' ').any(|of| of == owner))
     });
-    let said = found.map(|(_, _, said)| *said);
-    let kind = of_kind(value);
-    match (said, kind) {
-        (Some(said), Some(kind)) => Some(format!("{said}; {kind}")),
-        (Some(said), None) => Some(said.into()),
+    match (found, kind) {
+        (Some((_, _, said)), Some(kind)) => Some(format!("{said}: {kind}")),
+        (Some((_, _, said)), None) => Some((*said).into()),
         (None, kind) => kind.map(Into::into),
     }
 }
@@ -25,7 +33,13 @@ fn of_kind(value: &Node) -> Option<&'static str> {
     found.map(|(_, said)| *said)
 }
 
-const KINDS: [(&str, &str); 26] = [
+const KINDS: &[(&str, &str)] = &[
+    ("Dose", "given once"),
+    ("Hold", "kept up while it lasts"),
+    ("Bath", "taken up through wax or other cover"),
+    ("Wax", "wax is laid on, and cracks"),
+    ("Dye", "the cloth hangs in a bath"),
+    ("Sections", "dyed in sections"),
     ("Image", "the brightness of a picture beside this file"),
     ("Disc", "a round spot"),
     ("Discs", "spots in rows"),
@@ -64,11 +78,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
     ),
     // The larger parts.
     ("", "supply", "where and when dye is given"),
-    (
-        "",
-        "resist",
-        "how far the cloth is squeezed shut, 0 free to 1 shut",
-    ),
+    ("", "resist", "where it is squeezed, 0 free to 1 shut"),
     ("", "adsorption", "how dye binds to fibre"),
     ("", "process", "how long it takes, and how it is computed"),
     ("", "look", "how the cloth is drawn"),
@@ -124,7 +134,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
     (
         "",
         "vary_width",
-        "each yarn multiplies its width by a factor between these",
+        "each yarn has its width times a factor between these",
     ),
     (
         "warp weft",
@@ -134,7 +144,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
     (
         "",
         "vary_porosity",
-        "each yarn multiplies its porosity by a factor between these",
+        "each yarn has its porosity times a factor between these",
     ),
     (
         "",
@@ -144,7 +154,7 @@ const FIELDS: &[(&str, &str, &str)] = &[
     (
         "",
         "vary_twist",
-        "each yarn multiplies its twist by a factor between these",
+        "each yarn has its twist times a factor between these",
     ),
     (
         "",
@@ -177,9 +187,9 @@ const FIELDS: &[(&str, &str, &str)] = &[
         "rate",
         "how fast it binds, as a share of how fast it spreads",
     ),
-    ("", "isotherm", "how much fibre binds beside free dye"),
+    ("", "isotherm", "how much fibre binds"),
     // Supply.
-    ("", "shape", "where; half of a pattern gives half"),
+    ("", "shape", "where"),
     ("", "dose", "concentration of the liquid, 0 to 1"),
     (
         "Bath",

@@ -1,12 +1,14 @@
 //! Laying RON out for people: a field a line with its comment, short things on one line.
 
-use super::comments::comment;
+use super::comments::{ITEM, comment};
 use super::tree::Node;
 
 /// The longest line.
 const WIDEST: usize = 105;
 /// The longest thing that stays on one line.
-const INLINE: usize = 76;
+const INLINE: usize = 70;
+/// The same, where it holds nothing that has parts of its own.
+const INLINE_PLAIN: usize = 96;
 /// Comments stand in one column where what is before them is no longer than this.
 const COLUMN: usize = 46;
 
@@ -86,7 +88,8 @@ fn lay(node: &Node, owner: &str, before: String, key: &str, indent: usize, lines
     let end = if indent == 0 { "" } else { "," };
     let comment = comment(owner, key, node);
     let inline = node.inline();
-    let fits = indent + before.chars().count() + inline.chars().count() <= INLINE;
+    let most = if is_plain(node) { INLINE_PLAIN } else { INLINE };
+    let fits = indent + before.chars().count() + inline.chars().count() <= most;
     if fits && !is_section(node, key) {
         lines.push(Line {
             indent,
@@ -96,6 +99,20 @@ fn lay(node: &Node, owner: &str, before: String, key: &str, indent: usize, lines
         return;
     }
     let name = |name: &Option<String>| name.clone().unwrap_or_default();
+    // `Union([` opens both at once.
+    if let Node::Tuple(of, items) = node
+        && let [Node::List(parts)] = items.as_slice()
+    {
+        let line = |text, comment| Line {
+            indent,
+            text,
+            comment,
+        };
+        lines.push(line(format!("{before}{}([", name(of)), comment));
+        lay_items(parts, of.as_deref().unwrap_or(key), indent + 4, lines);
+        lines.push(line(format!("]){end}"), None));
+        return;
+    }
     let (open, close) = match node {
         Node::Atom(text) => (text.clone(), String::new()),
         Node::Fields(of, _) | Node::Tuple(of, _) => (format!("{}(", name(of)), ")".into()),
@@ -119,21 +136,43 @@ fn lay(node: &Node, owner: &str, before: String, key: &str, indent: usize, lines
         Node::Tuple(of, items) => {
             let own = of.as_deref().unwrap_or(key);
             for item in items {
-                lay(item, own, String::new(), own, inner, lines);
+                lay(item, ITEM, String::new(), own, inner, lines);
             }
         }
-        Node::List(items) if items.iter().all(is_short) => pack(items, inner, lines),
-        Node::List(items) => {
-            for item in items {
-                lay(item, key, String::new(), key, inner, lines);
-            }
-        }
+        Node::List(items) => lay_items(items, key, inner, lines),
     }
     lines.push(Line {
         indent,
         text: format!("{close}{end}"),
         comment: None,
     });
+}
+
+/// Lays out what is in a list; what has no name of its own goes by `key`.
+fn lay_items(items: &[Node], key: &str, indent: usize, lines: &mut Vec<Line>) {
+    if items.iter().all(is_short) {
+        return pack(items, indent, lines);
+    }
+    for item in items {
+        lay(item, ITEM, String::new(), key, indent, lines);
+    }
+}
+
+/// Whether something has no parts that have fields of their own.
+fn is_plain(node: &Node) -> bool {
+    let is_leaf = |node: &Node| match node {
+        Node::Atom(_) => true,
+        Node::Fields(..) => false,
+        Node::Tuple(_, items) | Node::List(items) => {
+            items.iter().all(|item| matches!(item, Node::Atom(_)))
+        }
+    };
+    match node {
+        Node::Fields(_, fields) => fields.iter().all(|(_, value)| is_leaf(value)),
+        Node::Tuple(_, items) => items.iter().all(is_plain),
+        Node::Atom(_) => true,
+        Node::List(_) => false,
+    }
 }
 
 /// What is never written on one line: every one of its fields has its own, with a comment.

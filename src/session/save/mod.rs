@@ -52,10 +52,29 @@ pub fn save(scenario: &Scenario) -> String {
     if let Ok(said) = read(&root.inline()) {
         let mut place = Vec::new();
         leave_out(&mut root, &mut place, &said);
+        let mut shorter = root.clone();
+        shorten(&mut shorter);
+        if read(&shorter.inline()).is_ok_and(|short| short == said) {
+            root = shorter;
+        }
     }
     paths.reverse();
     put_paths(&mut root, &mut paths);
     format!("{HEAD}{}", layout::write(&root))
+}
+
+/// Writes whole numbers without a point.
+fn shorten(node: &mut Node) {
+    match node {
+        Node::Atom(text) => {
+            let whole = text.strip_suffix(".0");
+            if let Some(whole) = whole.filter(|whole| whole.parse::<i64>().is_ok()) {
+                *text = whole.to_owned();
+            }
+        }
+        Node::Fields(_, fields) => fields.iter_mut().for_each(|(_, value)| shorten(value)),
+        Node::Tuple(_, items) | Node::List(items) => items.iter_mut().for_each(shorten),
+    }
 }
 
 /// Takes all but the first place out of every path.
