@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_egui::egui::{self, Ui, UiBuilder};
-use bevy_egui::{EguiContexts, EguiUserTextures};
+use bevy_egui::EguiContexts;
 
 use super::settings::Layout;
 use super::state::Watch;
@@ -26,13 +26,12 @@ pub fn draw(
     mut contexts: EguiContexts,
     mut watch: ResMut<Watch>,
     mut view: ResMut<View3d>,
-    user: Res<EguiUserTextures>,
     mut is_set_up: Local<bool>,
 ) -> Result {
     let textures = Textures {
-        flat: user.image_id(&watch.flat),
-        over: user.image_id(&watch.over),
-        studio: user.image_id(&view.image),
+        flat: contexts.image_id(&watch.flat),
+        over: contexts.image_id(&watch.over),
+        studio: contexts.image_id(&view.image),
     };
     let ctx = contexts.ctx_mut()?.clone();
     if !*is_set_up {
