@@ -55,10 +55,10 @@ fn files(ui: &mut Ui, watch: &mut Watch) {
         Some(label) => format!("{what}: {label}"),
         None => format!("Nothing to {}", what.to_lowercase()),
     };
-    if button(ui, undo.is_some(), "↶", &format!("{} (Ctrl Z)", tip("Undo", &undo))) {
+    if button(ui, undo.is_some(), "⟲", &format!("{} (Ctrl Z)", tip("Undo", &undo))) {
         watch.order_edit(Order::Undo);
     }
-    if button(ui, redo.is_some(), "↷", &format!("{} (Ctrl Y)", tip("Redo", &redo))) {
+    if button(ui, redo.is_some(), "⟳", &format!("{} (Ctrl Y)", tip("Redo", &redo))) {
         watch.order_edit(Order::Redo);
     }
     if button(ui, watch.recording.is_none(), "⏺ Record…", "Record the process from its beginning, as `dyelapse record` does (R)") {
@@ -82,7 +82,7 @@ fn views(ui: &mut Ui, watch: &mut Watch, view: &mut View3d) {
             view.touch();
         }
     }
-    if button(ui, true, "⌂", "Reset both views (F)") {
+    if button(ui, true, "🏠", "Reset both views (F)") {
         watch.tools.flat = Default::default();
         view.reset(&watch.edit.view);
     }

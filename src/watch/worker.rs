@@ -233,6 +233,8 @@ struct Process {
     problem: Option<String>,
     /// When and where the last frame of playing was.
     last: Instant,
+    /// When something on the way was shown last.
+    glimpse: Instant,
     speed: f64,
     /// Steps that are due but not whole yet.
     due: f64,
@@ -262,6 +264,7 @@ impl Process {
             reliefs: [nothing.clone(), nothing],
             problem: None,
             last: Instant::now(),
+            glimpse: Instant::now(),
             speed: 0.0,
             due: 0.0,
         };
@@ -412,6 +415,7 @@ impl Process {
             waiting.is_empty() && began.elapsed() < SLICE
         };
         let before = world.resource::<ProcessClock>().step;
+        let mut glimpsed = false;
         let arrived = if self.playing && self.session.has_arrived(world) {
             let elapsed = self.last.elapsed().as_secs_f64();
             self.last = Instant::now();
@@ -431,9 +435,10 @@ impl Process {
         } else {
             let arrived = self.session.go_on(world, &mut go_on);
             // Far away: what lies on the way is a film too.
-            if !arrived && self.last.elapsed() > GLIMPSE {
+            if !arrived && self.glimpse.elapsed() > GLIMPSE {
                 self.session.show(world);
-                self.last = Instant::now();
+                self.glimpse = Instant::now();
+                glimpsed = true;
             }
             arrived
         };
@@ -446,7 +451,8 @@ impl Process {
         for order in waiting {
             self.follow(order);
         }
-        arrived || self.last.elapsed() < SLICE
+        // On its way to a frame of the film nothing is shown: the frame is.
+        arrived || glimpsed
     }
 
     /// Gives the window what there is to be seen; waits until it has taken what was there before, or
