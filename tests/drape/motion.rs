@@ -43,7 +43,7 @@ fn energy_does_not_grow_with_any_integrator() {
     ] {
         let mut cloth = drape(&format!(
             "(particles: (15, 15), size_m: (0.14, 0.14), start: Flat(centre_m: (0, 0, 0)),
-              material: Measured((stretch: (50, 50), shear: 5, damping: 1e-3)),
+              material: Measured((stretch: (50, 50), shear: 5, damping: 5e-5)),
               pins: [(at: Line((0, 0), (1, 0)), radius_m: 0)],
               solver: (integrator: {integrator}, step_s: {step}, air: false, itself: false,
                        tolerance: 1e-6, iterations: 300))"
@@ -231,8 +231,8 @@ fn a_hand_draws_the_cloth_and_a_ray_finds_it() {
 #[test]
 fn another_material_takes_over_while_the_cloth_moves() {
     let mut cloth = drape(
-        "(particles: (17, 9), size_m: (0.2, 0.1), start: Flat(centre_m: (0, 1, 0)), material: SilkHabotai,
-          pins: [(at: Line((0, 0), (0, 1)), radius_m: 0.013)])",
+        "(particles: (17, 9), size_m: (0.1, 0.05), start: Flat(centre_m: (0, 1, 0)), material: SilkHabotai,
+          pins: [(at: Line((0, 0), (0, 1)), radius_m: 0.007)])",
     );
     advance(&mut cloth, 2.0);
     let end = |cloth: &Drape| cloth.positions()[16].x;
@@ -240,5 +240,5 @@ fn another_material_takes_over_while_the_cloth_moves() {
     cloth.set_material(&Material::Denim.measured());
     advance(&mut cloth, 2.0);
     let denim = end(&cloth);
-    assert!(denim > silk + 0.01, "denim stands out further: {silk} {denim}");
+    assert!(denim > silk + 0.002, "denim stands out further: {silk} {denim}");
 }
