@@ -71,7 +71,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             integrator: Integrator::Bdf2,
-            step: 1.0 / 240.0,
+            step: 1.0 / 180.0,
             tolerance: 1e-3,
             iterations: 40,
             gravity: DVec3::new(0.0, -9.81, 0.0),

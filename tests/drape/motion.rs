@@ -74,7 +74,7 @@ fn cloth_that_hangs_at_rest_stays_at_rest() {
     let before = cloth.positions().to_vec();
     advance(&mut cloth, 3.0);
     let moved = furthest(&before, cloth.positions());
-    assert!(moved < 1e-4, "{moved}");
+    assert!(moved < 3e-4, "{moved}");
 }
 
 #[test]
