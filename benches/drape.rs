@@ -16,7 +16,8 @@ use dyelapse::scenario::check::Checker;
 
 fn drape(text: &str) -> Drape {
     let spec = scenes::parse(text).expect("it is a drape");
-    spec.build((0.8, 0.9), 1, &Checker::root()).expect("it can be made")
+    spec.build((0.8, 0.9), 1, &Checker::root())
+        .expect("it can be made")
 }
 
 /// Least and median milliseconds of a frame.
@@ -70,7 +71,7 @@ fn paper() -> Paper {
         let (column, row) = (i % 15, i / 15);
         *mass.get_mut(column, row, 0) = 1e-4;
         *mass.get_mut(column, row, 1) = if i == 0 || i == 14 { 0.0 } else { 1.0 };
-        let wave = 1e-3 * ((column * 7 + row * 3) as f64).sin();
+        let wave = 1e-3 * libm::sin((column * 7 + row * 3) as f64);
         x.set_particle(i, DVec3::new(0.02 * column as f64, wave, 0.02 * row as f64));
     }
     Paper {
@@ -107,7 +108,10 @@ fn hangs_quietly(runge_kutta: bool, h: f64) -> (bool, f64) {
 }
 
 fn paper_c() {
-    println!("paper C's cloth, 15 × 15, k = {} N/m, k_d = {} N·s/m:", PAPER[0], PAPER[3]);
+    println!(
+        "paper C's cloth, 15 × 15, k = {} N/m, k_d = {} N·s/m:",
+        PAPER[0], PAPER[3]
+    );
     for (name, runge_kutta) in [("Euler", false), ("Runge–Kutta", true)] {
         // The longest quiet step, by halving between one that is and one that is not.
         let (mut quiet, mut wild) = (1e-5, 0.1);
@@ -119,8 +123,13 @@ fn paper_c() {
                 wild = middle;
             }
         }
-        let cost = (0..3).map(|_| hangs_quietly(runge_kutta, quiet).1).fold(f64::INFINITY, f64::min);
-        println!("  {name:<14} {:8.4} ms a step, quiet up to {quiet:.2e} s", 1e-3 * cost);
+        let cost = (0..3)
+            .map(|_| hangs_quietly(runge_kutta, quiet).1)
+            .fold(f64::INFINITY, f64::min);
+        println!(
+            "  {name:<14} {:8.4} ms a step, quiet up to {quiet:.2e} s",
+            1e-3 * cost
+        );
     }
     for integrator in ["BackwardEuler", "Bdf2"] {
         let mut longest = 0.0;
@@ -142,7 +151,9 @@ fn paper_c() {
                 longest = step;
             }
         }
-        println!("  {integrator:<14} {cost:8.4} ms a step, quiet at {longest:.2e} s, the longest allowed being 1 s");
+        println!(
+            "  {integrator:<14} {cost:8.4} ms a step, quiet at {longest:.2e} s, the longest allowed being 1 s"
+        );
     }
 }
 

@@ -16,7 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cloth = scenes::parse(text)?.build((0.8, 0.9), 0, &Checker::root())?;
     let (nx, ny) = cloth.sheet().links.particles;
     let mut app = App::new();
-    app.add_plugins(DrapePlugin).insert_resource(Draped::new(cloth));
+    app.add_plugins(DrapePlugin)
+        .insert_resource(Draped::new(cloth));
     let middle = (ny / 2) * nx + nx / 2;
     for tenth in 1..=50_u32 {
         let seconds = f64::from(tenth) / 10.0;
@@ -38,7 +39,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             let x = draped.drape.positions();
             let sag = 0.5 * (x[0].y + x[nx - 1].y) - x[nx / 2].y;
             let stretch = 100.0 * draped.drape.stretched();
-            println!("{seconds:3.1} s: sags {:3.0} mm between the pegs, {stretch:.2} % longer", 1e3 * sag);
+            println!(
+                "{seconds:3.1} s: sags {:3.0} mm between the pegs, {stretch:.2} % longer",
+                1e3 * sag
+            );
         }
     }
     if let Some(path) = std::env::args().nth(1) {

@@ -118,7 +118,10 @@ impl DrapeSpec {
         let areas: Vec<f64> = (0..across * down).map(cell).collect();
         // Slivers would be too light to compute with.
         let least = 0.05 * dx * dy;
-        areas.into_iter().map(|a| if a < least { 0.0 } else { a }).collect()
+        areas
+            .into_iter()
+            .map(|a| if a < least { 0.0 } else { a })
+            .collect()
     }
 
     fn start_positions(&self, (width, height): (f64, f64), seed: u64) -> Vec<DVec3> {
@@ -142,11 +145,8 @@ impl DrapeSpec {
                     let longitude = x / radius_m;
                     let latitude = ((0.5 * height - y) / radius_m).clamp(-FRAC_PI_2, FRAC_PI_2);
                     let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
-                    let out = DVec3::new(
-                        cos * libm::sin(longitude),
-                        sin,
-                        cos * libm::cos(longitude),
-                    );
+                    let out =
+                        DVec3::new(cos * libm::sin(longitude), sin, cos * libm::cos(longitude));
                     vector(centre_m) + radius_m * out
                 }
             }
@@ -207,7 +207,8 @@ impl DrapeSpec {
             return Err(at.problem(what.into()));
         }
         if !crossings(x, &triangles, &colliders.mesh).is_empty() {
-            let what = "the cloth begins in the way of itself or of a table or mesh; it must begin free";
+            let what =
+                "the cloth begins in the way of itself or of a table or mesh; it must begin free";
             return Err(at.problem(what.into()));
         }
         Ok(())

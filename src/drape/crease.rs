@@ -168,7 +168,9 @@ impl CreaseLink {
     /// Takes the link that it replaces out of `links`.
     pub fn take_from(&self, links: &mut Links) {
         for plane in [K_B, C_B] {
-            *links.stiffness.get_mut(self.at.0, self.at.1, plane + self.direction) = 0.0;
+            *links
+                .stiffness
+                .get_mut(self.at.0, self.at.1, plane + self.direction) = 0.0;
         }
     }
 
@@ -225,8 +227,14 @@ impl CreaseLink {
         let along = fold.b - fold.a;
         let r = along.length();
         let n = along.normalize_or_zero();
-        let (pull, push) = (stretch(r, self.rest, self.k), bend(r, self.rest, self.k_b, self.c_b));
-        let Pull { force: f, stiffness } = Pull {
+        let (pull, push) = (
+            stretch(r, self.rest, self.k),
+            bend(r, self.rest, self.k_b, self.c_b),
+        );
+        let Pull {
+            force: f,
+            stiffness,
+        } = Pull {
             force: pull.force + push.force,
             stiffness: pull.stiffness + push.stiffness,
         };

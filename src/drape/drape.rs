@@ -336,7 +336,9 @@ impl Drape {
         }
         if meshes {
             let colliders = &self.colliders;
-            pairs.extend(with_colliders(topology, &self.tree, colliders, motion, margin));
+            pairs.extend(with_colliders(
+                topology, &self.tree, colliders, motion, margin,
+            ));
         }
         pairs
     }
@@ -350,8 +352,7 @@ impl Drape {
             if !pin.holds(self.time) {
                 continue;
             }
-            let taken =
-                taken.get_or_insert_with(|| pin.particles.iter().map(|i| x[*i]).collect());
+            let taken = taken.get_or_insert_with(|| pin.particles.iter().map(|i| x[*i]).collect());
             let moved = pin.moved(self.time + step);
             for (i, from) in pin.particles.iter().zip(taken) {
                 led[*i] = Some(*from + moved - x[*i]);
@@ -402,9 +403,19 @@ impl Drape {
             });
         }
         let mut changed = vec![false; mobility.len()];
-        if matches!(self.settings.integrator, Integrator::BackwardEuler | Integrator::Bdf2) {
+        if matches!(
+            self.settings.integrator,
+            Integrator::BackwardEuler | Integrator::Bdf2
+        ) {
             let (links, most) = (&self.sheet.links, self.settings.locks_at);
-            limit(links, most, &mobility, &self.state.x, &mut proposed.moves, &mut changed);
+            limit(
+                links,
+                most,
+                &mobility,
+                &self.state.x,
+                &mut proposed.moves,
+                &mut changed,
+            );
         }
         let (filtered, pairs) = self.filter(&mobility, covered, &mut proposed.moves, &mut changed);
         self.take(proposed, changed, &mobility, step)
@@ -428,6 +439,7 @@ impl Drape {
         let triangles = std::mem::take(&mut self.triangles);
         let (one, two) = self.sheet.links.spacing;
         let (leg, shorter) = (one.max(two), one.min(two));
+        let diagonal = self.sheet.links.length(2);
         let bodies = Bodies {
             particles: self.state.x.len(),
             from: &from,
@@ -437,7 +449,7 @@ impl Drape {
             exact: &exact,
             covered,
             triangles: &triangles,
-            longest: [(1.05 * leg).powi(2), (1.1 * self.sheet.links.length(2)).powi(2)],
+            longest: [1.05 * 1.05 * leg * leg, 1.21 * diagonal * diagonal],
         };
         moves.resize(from.len(), DVec3::ZERO);
         for i in 0..bodies.particles {
@@ -485,7 +497,14 @@ impl Drape {
             let i = touch.particle as usize;
             changed[i] = true;
             let end = state.x[i] + moves[i];
-            let anchor = anchored(*touch, moves[i], end, 1.0 / mobility[i], state.anchors[i], rule);
+            let anchor = anchored(
+                *touch,
+                moves[i],
+                end,
+                1.0 / mobility[i],
+                state.anchors[i],
+                rule,
+            );
             if let Some(anchor) = anchor
                 && anchors[i].is_none_or(|other: Anchor| other.pressed < anchor.pressed)
             {
@@ -651,7 +670,14 @@ fn propose_explicit(given: &Given) -> Proposed {
     for (i, lead) in given.lead.iter().enumerate() {
         let held = given.mobility[i] <= 0.0;
         x.set_particle(i, given.state.x[i]);
-        v.set_particle(i, if held { *lead / given.step } else { given.state.v[i] });
+        v.set_particle(
+            i,
+            if held {
+                *lead / given.step
+            } else {
+                given.state.v[i]
+            },
+        );
     }
     let mut cloth = Explicit::new(x, v);
     let pulls = Pulls {

@@ -85,5 +85,7 @@ pub fn sunk(x: &[DVec3], triangles: &[[u32; 3]], colliders: &Colliders) -> Vec<u
             }
         })
     };
-    (0..triangles.len()).filter(|i| inside(&triangles[*i])).collect()
+    (0..triangles.len())
+        .filter(|i| inside(&triangles[*i]))
+        .collect()
 }

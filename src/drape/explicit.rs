@@ -60,7 +60,11 @@ impl Explicit {
             let [mass, free] = pulls.mass.lines(y as isize, 0, 0);
             for (line, gravity) in a.into_iter().zip(gravity) {
                 for ((a, mass), free) in line.iter_mut().zip(mass).zip(free) {
-                    *a = if *free > 0.0 { *a / mass + gravity } else { 0.0 };
+                    *a = if *free > 0.0 {
+                        *a / mass + gravity
+                    } else {
+                        0.0
+                    };
                 }
             }
         });

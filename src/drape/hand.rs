@@ -35,7 +35,11 @@ impl Hand {
         let off = self.target - x;
         let most = STRONGEST * drawn;
         let share = (most / (stiffness * off.length()).max(1e-300)).min(1.0);
-        (share * stiffness * off - damping * v, share * stiffness, damping)
+        (
+            share * stiffness * off - damping * v,
+            share * stiffness,
+            damping,
+        )
     }
 }
 
@@ -61,7 +65,10 @@ pub fn hit(drape: &Drape, origin: DVec3, direction: DVec3) -> Option<Hit> {
     let (nx, ny) = drape.sheet().links.particles;
     let uv = |i: u32| {
         let (column, row) = (i as usize % nx, i as usize / nx);
-        DVec2::new(column as f64 / (nx - 1) as f64, row as f64 / (ny - 1) as f64)
+        DVec2::new(
+            column as f64 / (nx - 1) as f64,
+            row as f64 / (ny - 1) as f64,
+        )
     };
     let mut first: Option<Hit> = None;
     for (number, t) in drape.triangles().iter().enumerate() {

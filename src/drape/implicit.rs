@@ -63,7 +63,8 @@ impl Scheme {
         let h = given.step;
         let same = |last: f64| (last - h).abs() < 1e-9 * h;
         // The first step has no past, nor has one of another length.
-        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same) {
+        if given.settings.integrator == Integrator::Bdf2 && given.state.last_step.is_some_and(same)
+        {
             Scheme {
                 alpha: 4.0 * h * h / 9.0,
                 beta: 2.0 * h / 3.0,
@@ -148,7 +149,9 @@ impl Implicit {
         let [last, before] = &self.guesses;
         self.solver.begin(&system, [last, before], &mut self.u);
         let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);
-        let solved = self.solver.solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
+        let solved = self
+            .solver
+            .solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
         self.guesses.swap(0, 1);
         self.guesses[0].clone_from(&self.u);
         let nx = sheet.links.particles.0;
@@ -176,7 +179,8 @@ impl Implicit {
             let v = scheme.velocity(*lead, state.last_move[i], given.step);
             self.v.set_particle(i, v);
             let held = given.mobility[i] <= 0.0;
-            self.coming.set_particle(i, if held { DVec3::ZERO } else { about(given, i) });
+            self.coming
+                .set_particle(i, if held { DVec3::ZERO } else { about(given, i) });
         }
         for (single, double) in self.mass.all_mut().iter_mut().zip(sheet.mass.all()) {
             *single = *double as f32;
@@ -193,7 +197,8 @@ impl Implicit {
             beta: scheme.beta,
             moves: &self.coming,
         };
-        self.response.compute(&sheet.links, &self.x, &self.v, Some(ahead));
+        self.response
+            .compute(&sheet.links, &self.x, &self.v, Some(ahead));
         self.pull.all_mut().fill(0.0);
         self.response.add_forces(&mut self.pull);
         for crease in &sheet.creases {
@@ -271,7 +276,13 @@ impl Implicit {
             alpha: scheme.alpha,
             step: given.step,
         };
-        let guess = |i: usize| if i < count { about(given, i) } else { DVec3::ZERO };
+        let guess = |i: usize| {
+            if i < count {
+                about(given, i)
+            } else {
+                DVec3::ZERO
+            }
+        };
         let corner = |i: usize| match state.x.get(i) {
             Some(x) => *x,
             None => given.colliders.mesh.corners[i - count],
@@ -325,7 +336,11 @@ impl Implicit {
 /// Leaves of the touches of a particle with the triangles of one flat face only the nearest: the closest
 /// points of the others lie on their edges, and would push along the face.
 fn drop_the_same_face(touches: &mut Vec<Touch>, x: &[DVec3]) {
-    touches.sort_by(|a, b| a.particle.cmp(&b.particle).then(a.distance.total_cmp(&b.distance)));
+    touches.sort_by(|a, b| {
+        a.particle
+            .cmp(&b.particle)
+            .then(a.distance.total_cmp(&b.distance))
+    });
     let mut kept: Vec<Touch> = Vec::with_capacity(touches.len());
     for touch in touches.iter() {
         let at = |touch: &Touch| x[touch.particle as usize] - touch.distance * touch.normal;
@@ -333,7 +348,10 @@ fn drop_the_same_face(touches: &mut Vec<Touch>, x: &[DVec3]) {
             let along = at(touch) - at(nearer);
             along.dot(nearer.normal).abs() <= 1e-6 * nearer.distance
         };
-        let before = kept.iter().rev().take_while(|nearer| nearer.particle == touch.particle);
+        let before = kept
+            .iter()
+            .rev()
+            .take_while(|nearer| nearer.particle == touch.particle);
         if before.filter(is_same).count() == 0 {
             kept.push(*touch);
         }

@@ -61,13 +61,7 @@ pub fn limit(
     }
 }
 
-fn too_long(
-    links: &Links,
-    most: f64,
-    mobility: &[f64],
-    x: &[DVec3],
-    moves: &[DVec3],
-) -> Vec<Long> {
+fn too_long(links: &Links, most: f64, mobility: &[f64], x: &[DVec3], moves: &[DVec3]) -> Vec<Long> {
     let (nx, ny) = links.particles;
     let mut found = Vec::new();
     for direction in 0..2 {

@@ -111,7 +111,8 @@ impl Material {
             return Ok(());
         };
         at.field("weight").within(spec.weight, 0.1..=1e5)?;
-        at.field("thickness_mm").within(spec.thickness_mm, 0.0..=100.0)?;
+        at.field("thickness_mm")
+            .within(spec.thickness_mm, 0.0..=100.0)?;
         for (i, stretch) in [spec.stretch.0, spec.stretch.1].into_iter().enumerate() {
             at.field("stretch").item(i).within(stretch, 0.01..=1e12)?;
         }
@@ -127,7 +128,10 @@ impl Material {
 impl MaterialSpec {
     /// The strain at which its yarns [lock](super::limit) in a cloth `size` metres long.
     pub fn locks_at(&self, size: f64) -> f64 {
-        locks_at(9.81e-3 * self.weight * size, self.stretch.0.min(self.stretch.1))
+        locks_at(
+            9.81e-3 * self.weight * size,
+            self.stretch.0.min(self.stretch.1),
+        )
     }
 
     /// In SI units, weft first as along a row of particles.

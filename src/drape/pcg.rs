@@ -47,7 +47,10 @@ impl Work {
         let (aa, bb) = (system.apply(guesses[0], p), system.apply(guesses[1], q));
         let mut product = |a: &Rows<f32>, b: &Rows<f32>| {
             sum(z, |y, _| {
-                let (a, b) = (a.lines::<3>(y as isize, 0, 0), b.lines::<3>(y as isize, 0, 0));
+                let (a, b) = (
+                    a.lines::<3>(y as isize, 0, 0),
+                    b.lines::<3>(y as isize, 0, 0),
+                );
                 a.into_iter().zip(b).map(|(a, b)| dot(a, b)).sum()
             })
         };
@@ -55,7 +58,10 @@ impl Work {
         let (ra, rb) = (product(guesses[0], r), product(guesses[1], r));
         let determinant = aa * bb - ab * ab;
         let (a, b) = if determinant > 1e-4 * aa * bb {
-            ((ra * bb - rb * ab) / determinant, (rb * aa - ra * ab) / determinant)
+            (
+                (ra * bb - rb * ab) / determinant,
+                (rb * aa - ra * ab) / determinant,
+            )
         } else if aa > 0.0 {
             (ra / aa, 0.0)
         } else {
@@ -85,7 +91,7 @@ impl Work {
         let mut iterations = 0;
         while iterations < most && rz > tolerance * tolerance * begin && rz > 0.0 {
             let pq = system.apply(p, q);
-            if !(pq > 0.0) {
+            if pq.is_nan() || pq <= 0.0 {
                 break;
             }
             let alpha = rz / pq;
@@ -98,7 +104,11 @@ impl Work {
         }
         Solved {
             iterations,
-            residual: if begin > 0.0 { (rz / begin).max(0.0).sqrt() } else { 0.0 },
+            residual: if begin > 0.0 {
+                (rz / begin).max(0.0).sqrt()
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -114,7 +124,9 @@ fn advance(u: &mut Rows<f32>, r: &mut Rows<f32>, p: &Rows<f32>, q: &Rows<f32>, a
 
 /// p = z + b·p.
 fn renew(p: &mut Rows<f32>, z: &Rows<f32>, b: f32) {
-    each(p, |y, p| renew_row(p.planes().take(), z.lines(y as isize, 0, 0), b));
+    each(p, |y, p| {
+        renew_row(p.planes().take(), z.lines(y as isize, 0, 0), b)
+    });
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
@@ -176,7 +188,11 @@ fn invert_row(m: [&mut [f64]; 6], free: &[f32]) {
 pub fn invert([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 6] {
     let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
     let determinant = xx * a + xy * b + xz * c;
-    let per = if determinant > 0.0 { 1.0 / determinant } else { 0.0 };
+    let per = if determinant > 0.0 {
+        1.0 / determinant
+    } else {
+        0.0
+    };
     [
         a * per,
         (xx * zz - xz * xz) * per,
@@ -191,7 +207,11 @@ impl Precondition for Particles {
     fn apply(&mut self, r: &Rows<f32>, z: &mut Rows<f32>) -> f64 {
         sum(z, |y, z| {
             let y = y as isize;
-            particles_row(z.planes().take(), r.lines(y, 0, 0), self.inverse.lines(y, 0, 0))
+            particles_row(
+                z.planes().take(),
+                r.lines(y, 0, 0),
+                self.inverse.lines(y, 0, 0),
+            )
         })
     }
 }

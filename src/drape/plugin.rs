@@ -112,7 +112,7 @@ fn follow_clock(clock: Res<DrapeClock>, mut draped: ResMut<Draped>) {
     }
     let seconds = clock.asked_s - draped.time();
     // Less than this is what is left of adding up steps.
-    if !(seconds > 1e-9) {
+    if seconds.is_nan() || seconds <= 1e-9 {
         return;
     }
     if let Err(error) = draped.drape.advance(seconds) {
@@ -127,7 +127,10 @@ fn follow_clock(clock: Res<DrapeClock>, mut draped: ResMut<Draped>) {
 pub fn drape_to(world: &mut World, seconds: f64) -> Result<(), DrapeError> {
     world.resource_mut::<DrapeClock>().asked_s = seconds;
     world.run_schedule(DrapeStep);
-    match world.get_resource::<Draped>().and_then(|draped| draped.error.clone()) {
+    match world
+        .get_resource::<Draped>()
+        .and_then(|draped| draped.error.clone())
+    {
         Some(error) => Err(error),
         None => Ok(()),
     }

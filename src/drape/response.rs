@@ -90,47 +90,45 @@ impl Response {
         });
     }
 
-    fn compute_stretch(
-        &mut self,
-        links: &Links,
-        x: &Rows,
-        v: &Rows,
-        ahead: Option<Ahead>,
-    ) {
+    fn compute_stretch(&mut self, links: &Links, x: &Rows, v: &Rows, ahead: Option<Ahead>) {
         let bend = &self.bend;
-        each2(&mut self.stretch, &mut self.stretch_blocks, |y, out, matrices| {
-            let (mut out, mut matrices) = (out.planes(), matrices.planes());
-            for (direction, (dx, dy)) in DIRECTIONS.into_iter().enumerate() {
-                let row = y as isize;
-                let [k] = links.stiffness.lines(row, K + direction, 0);
-                let [front] = bend.lines(row, PUSH + direction, 0);
-                let [behind] = bend.lines(row - dy, PUSH + direction, -dx);
-                let ends = Ends::new(x, y, direction, 1);
-                let speeds = Ends::new(v, y, direction, 1);
-                let law = Stretch {
-                    length: links.length(direction),
-                    damping: links.damping[direction],
-                    alpha: ahead.map_or(0.0, |ahead| ahead.alpha),
-                    beta: ahead.map_or(0.0, |ahead| ahead.beta),
-                };
-                // Without a step ahead nothing is looked up in it.
-                let moves = ahead.map_or(x, |ahead| ahead.moves);
-                let coming = Ends::new(moves, y, direction, 1);
-                let (force, block, pushes) = (out.take(), matrices.take(), [front, behind]);
-                let ends = [ends, speeds, coming];
-                match (links.model, ahead.is_some()) {
-                    (Model::Choi, true) => {
-                        stretch_row::<true, true>(ends, k, pushes, law, force, block);
-                    }
-                    (Model::Choi, false) => {
-                        stretch_row::<true, false>(ends, k, pushes, law, force, block);
-                    }
-                    (Model::Lander, _) => {
-                        stretch_row::<false, true>(ends, k, pushes, law, force, block);
+        each2(
+            &mut self.stretch,
+            &mut self.stretch_blocks,
+            |y, out, matrices| {
+                let (mut out, mut matrices) = (out.planes(), matrices.planes());
+                for (direction, (dx, dy)) in DIRECTIONS.into_iter().enumerate() {
+                    let row = y as isize;
+                    let [k] = links.stiffness.lines(row, K + direction, 0);
+                    let [front] = bend.lines(row, PUSH + direction, 0);
+                    let [behind] = bend.lines(row - dy, PUSH + direction, -dx);
+                    let ends = Ends::new(x, y, direction, 1);
+                    let speeds = Ends::new(v, y, direction, 1);
+                    let law = Stretch {
+                        length: links.length(direction),
+                        damping: links.damping[direction],
+                        alpha: ahead.map_or(0.0, |ahead| ahead.alpha),
+                        beta: ahead.map_or(0.0, |ahead| ahead.beta),
+                    };
+                    // Without a step ahead nothing is looked up in it.
+                    let moves = ahead.map_or(x, |ahead| ahead.moves);
+                    let coming = Ends::new(moves, y, direction, 1);
+                    let (force, block, pushes) = (out.take(), matrices.take(), [front, behind]);
+                    let ends = [ends, speeds, coming];
+                    match (links.model, ahead.is_some()) {
+                        (Model::Choi, true) => {
+                            stretch_row::<true, true>(ends, k, pushes, law, force, block);
+                        }
+                        (Model::Choi, false) => {
+                            stretch_row::<true, false>(ends, k, pushes, law, force, block);
+                        }
+                        (Model::Lander, _) => {
+                            stretch_row::<false, true>(ends, k, pushes, law, force, block);
+                        }
                     }
                 }
-            }
-        });
+            },
+        );
     }
 
     /// Adds the forces of all links to `force` (planes 0 to 2, N).
@@ -197,7 +195,14 @@ fn polar(d: [f64; 3]) -> (f64, [f64; 3]) {
 fn matrix(n: [f64; 3], along: f64, all: f64) -> [f64; BLOCK] {
     let [x, y, z] = n;
     let (ax, ay, az) = (along * x, along * y, along * z);
-    [ax * x + all, ay * y + all, az * z + all, ax * y, ax * z, ay * z]
+    [
+        ax * x + all,
+        ay * y + all,
+        az * z + all,
+        ax * y,
+        ax * z,
+        ay * z,
+    ]
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]

@@ -476,7 +476,9 @@ impl CreaseSpec {
         check_place(&at.field("from"), self.from)?;
         check_place(&at.field("to"), self.to)?;
         if self.from == self.to {
-            return Err(at.field("to").problem("a crease ends where it does not begin".into()));
+            return Err(at
+                .field("to")
+                .problem("a crease ends where it does not begin".into()));
         }
         // Beyond, the side would no longer be certain: see `crease`.
         at.field("angle").within(self.angle, 1.0..=160.0)?;
@@ -491,7 +493,8 @@ impl SolverSpec {
     fn check(&self, at: &Checker) -> Result<(), Problem> {
         at.field("step_s").within(self.step_s, 1e-6..=1.0)?;
         at.field("tolerance").within(self.tolerance, 1e-7..=0.1)?;
-        at.field("iterations").within(self.iterations, 1..=100_000)?;
+        at.field("iterations")
+            .within(self.iterations, 1..=100_000)?;
         at.field("apart_mm").within(self.apart_mm, 0.01..=100.0)?;
         at.field("uneven_mm").within(self.uneven_mm, 0.0..=10.0)
     }

@@ -30,7 +30,10 @@ pub struct System<'a> {
 impl System<'_> {
     /// The blocks of the links by how many steps they reach.
     fn blocks(&self) -> [(&Rows<f32>, isize); 2] {
-        [(&self.links.stretch_blocks, 1), (&self.links.bend_blocks, 2)]
+        [
+            (&self.links.stretch_blocks, 1),
+            (&self.links.bend_blocks, 2),
+        ]
     }
 
     /// out = A·u; returns u·A·u.
@@ -136,7 +139,12 @@ impl WithSimd for ApplyRow<'_> {
                 sum[c] = simd.mul_f32s(m, here[c]);
             }
             add_times(simd, &mut sum, at.six::<S>(own, 0, 0), here);
-            for Reach { blocks, u: there, hops } in links {
+            for Reach {
+                blocks,
+                u: there,
+                hops,
+            } in links
+            {
                 let [b0, b1] = blocks;
                 // Along the row, down, and down to the right and left.
                 at.add_link(simd, &mut sum, here, (b0, 0, 0), (u, hops));

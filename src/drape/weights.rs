@@ -53,7 +53,10 @@ pub fn assemble(
     for y in 0..particles.1 {
         for x in 0..particles.0 {
             let around = [(-1, -1), (0, -1), (-1, 0), (0, 0)];
-            let sum: f64 = around.iter().map(|(i, j)| cells.at(x as isize + i, y as isize + j)).sum();
+            let sum: f64 = around
+                .iter()
+                .map(|(i, j)| cells.at(x as isize + i, y as isize + j))
+                .sum();
             *mass.get_mut(x, y, 0) = 0.25 * sum * measured.weight;
             *mass.get_mut(x, y, 1) = 1.0;
         }
@@ -88,7 +91,11 @@ pub fn assemble(
                     }
                     let piece = |(di, dj): &(isize, isize)| {
                         let area = cells.at(i + di, j + dj);
-                        if area > 0.0 { area / shared(i + di, j + dj) } else { 0.0 }
+                        if area > 0.0 {
+                            area / shared(i + di, j + dj)
+                        } else {
+                            0.0
+                        }
                     };
                     all.push((x, y, covers.iter().map(piece).sum::<f64>()));
                 }
@@ -104,8 +111,10 @@ pub fn assemble(
                     let c_b =
                         measured.buckling * moduli.stretch[direction] * area / (length * length);
                     *stiffness.get_mut(x, y, K_B + direction) = k_b;
-                    *stiffness.get_mut(x, y, C_B + direction) =
-                        c_b.max(buckles_soon(measured, k_b, length).min(stiffest * area / (length * length)));
+                    *stiffness.get_mut(x, y, C_B + direction) = c_b.max(
+                        buckles_soon(measured, k_b, length)
+                            .min(stiffest * area / (length * length)),
+                    );
                 }
             }
         }
@@ -125,7 +134,7 @@ fn buckles_soon(measured: &Measured, k_b: f64, length: f64) -> f64 {
         return 0.0;
     }
     let curvature = EARLY * libm::cbrt(9.81 * measured.weight / bending);
-    288.0 * k_b / (curvature * curvature * length.powi(5))
+    288.0 * k_b / (curvature * curvature * length * length * length * length * length)
 }
 
 /// The share of its balanced curvature at which cloth has buckled.
@@ -153,7 +162,9 @@ impl Moduli {
             let (c2, s2) = (dx * dx / diagonal, dy * dy / diagonal);
             let of_strip = 9.0 / 8.0;
             let across = of_strip * (bx * by).sqrt() / (12.0 * c2 * s2);
-            let along = |b: f64, share: f64| (0.5 * of_strip * b - 2.0 * share * share * across).max(0.05 * b);
+            let along = |b: f64, share: f64| {
+                (0.5 * of_strip * b - 2.0 * share * share * across).max(0.05 * b)
+            };
             [along(bx, c2), along(by, s2), across, across]
         };
         Moduli {
@@ -171,7 +182,9 @@ fn covered(direction: usize, hops: isize) -> Vec<(isize, isize)> {
         d if d > 0 => 0..hops,
         _ => -hops..0,
     };
-    span(dy).flat_map(|j| span(dx).map(move |i| (i, j))).collect()
+    span(dy)
+        .flat_map(|j| span(dx).map(move |i| (i, j)))
+        .collect()
 }
 
 struct Cells<'a> {

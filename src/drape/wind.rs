@@ -58,7 +58,11 @@ impl Wind {
         });
         Wind {
             mean,
-            waves: if speed > 0.0 { waves.collect() } else { Vec::new() },
+            waves: if speed > 0.0 {
+                waves.collect()
+            } else {
+                Vec::new()
+            },
         }
     }
 

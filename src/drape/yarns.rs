@@ -107,7 +107,13 @@ impl Precondition for Yarns {
 
 /// Numbers side by side: of many rows at column `i`, or of many columns in row `i`.
 #[inline(always)]
-fn load<T: Number>(rows: &Rows<T>, along_x: bool, first: usize, i: usize, plane: usize) -> [T; LANES] {
+fn load<T: Number>(
+    rows: &Rows<T>,
+    along_x: bool,
+    first: usize,
+    i: usize,
+    plane: usize,
+) -> [T; LANES] {
     let mut lanes = [T::default(); LANES];
     if along_x {
         for (lane, value) in lanes.iter_mut().enumerate() {
@@ -134,7 +140,13 @@ impl Bundle {
         } = system.links;
         let kind = if self.along_x { 0 } else { BLOCK };
         let place = (self.along_x, self.first);
-        factor(place, diagonal, system.mass, (stretch, bend, kind), &mut self.factors);
+        factor(
+            place,
+            diagonal,
+            system.mass,
+            (stretch, bend, kind),
+            &mut self.factors,
+        );
     }
 
     fn solve(&mut self, r: &Rows<f32>) {
@@ -250,19 +262,63 @@ impl WithSimd for Solve<'_> {
                 two = two_next;
                 for c in 0..3 {
                     let (p, q) = (BLOCK + 3 * c, BLOCK + 9 + 3 * c);
-                    one[c] = times(simd, [at::<S>(f, p, part), at::<S>(f, p + 1, part), at::<S>(f, p + 2, part)], y);
-                    two_next[c] = times(simd, [at::<S>(f, q, part), at::<S>(f, q + 1, part), at::<S>(f, q + 2, part)], y);
+                    one[c] = times(
+                        simd,
+                        [
+                            at::<S>(f, p, part),
+                            at::<S>(f, p + 1, part),
+                            at::<S>(f, p + 2, part),
+                        ],
+                        y,
+                    );
+                    two_next[c] = times(
+                        simd,
+                        [
+                            at::<S>(f, q, part),
+                            at::<S>(f, q + 1, part),
+                            at::<S>(f, q + 2, part),
+                        ],
+                        y,
+                    );
                 }
             }
             let (mut one, mut two) = (zero, zero);
             for (f, out) in factors.iter().zip(solution.iter_mut()).rev() {
-                let y = [at::<S>(out, 0, part), at::<S>(out, 1, part), at::<S>(out, 2, part)];
+                let y = [
+                    at::<S>(out, 0, part),
+                    at::<S>(out, 1, part),
+                    at::<S>(out, 2, part),
+                ];
                 let mut x = zero;
                 for c in 0..3 {
                     let (p, q) = (BLOCK + c, BLOCK + 9 + c);
-                    let s = times(simd, [at::<S>(f, SYMMETRIC[c][0], part), at::<S>(f, SYMMETRIC[c][1], part), at::<S>(f, SYMMETRIC[c][2], part)], y);
-                    let p = times(simd, [at::<S>(f, p, part), at::<S>(f, p + 3, part), at::<S>(f, p + 6, part)], one);
-                    let q = times(simd, [at::<S>(f, q, part), at::<S>(f, q + 3, part), at::<S>(f, q + 6, part)], two);
+                    let s = times(
+                        simd,
+                        [
+                            at::<S>(f, SYMMETRIC[c][0], part),
+                            at::<S>(f, SYMMETRIC[c][1], part),
+                            at::<S>(f, SYMMETRIC[c][2], part),
+                        ],
+                        y,
+                    );
+                    let p = times(
+                        simd,
+                        [
+                            at::<S>(f, p, part),
+                            at::<S>(f, p + 3, part),
+                            at::<S>(f, p + 6, part),
+                        ],
+                        one,
+                    );
+                    let q = times(
+                        simd,
+                        [
+                            at::<S>(f, q, part),
+                            at::<S>(f, q + 3, part),
+                            at::<S>(f, q + 6, part),
+                        ],
+                        two,
+                    );
                     x[c] = simd.sub_f32s(s, simd.add_f32s(p, q));
                     S::as_mut_simd_f32s(&mut out[c]).0[part] = x[c];
                 }

@@ -81,7 +81,10 @@ fn cloth_folded_onto_itself_does_not_pass() {
         assert_whole(&cloth, "a folded corner");
     }
     let corner = cloth.positions()[0];
-    assert!(corner.x > 0.0 && corner.z > 0.0, "it was folded over: {corner}");
+    assert!(
+        corner.x > 0.0 && corner.z > 0.0,
+        "it was folded over: {corner}"
+    );
 }
 
 /// A cloth whose particles all fly at `velocity`.
@@ -96,9 +99,15 @@ fn thrown(text: &str, velocity: DVec3) -> Drape {
 fn fast_cloth_does_not_pass_through_a_ball_or_a_thin_table() {
     for (what, on) in [
         ("ball", "Ball(centre_m: (0, 0, 0), radius_m: 0.05)"),
-        ("table", "SquareTable(centre_m: (0, 0.02, 0), size_m: (0.1, 0.1), thickness_m: 0.002, edge_m: 0)"),
-        ("mesh", "Mesh(corners_m: [(0, 0.05, 0), (0.05, 0, 0.05), (-0.05, 0, 0.04), (0, 0, -0.06)],
-                       triangles: [(0, 2, 1), (0, 3, 2), (0, 1, 3), (1, 2, 3)])"),
+        (
+            "table",
+            "SquareTable(centre_m: (0, 0.02, 0), size_m: (0.1, 0.1), thickness_m: 0.002, edge_m: 0)",
+        ),
+        (
+            "mesh",
+            "Mesh(corners_m: [(0, 0.05, 0), (0.05, 0, 0.05), (-0.05, 0, 0.04), (0, 0, -0.06)],
+                       triangles: [(0, 2, 1), (0, 3, 2), (0, 1, 3), (1, 2, 3)])",
+        ),
     ] {
         let text = format!(
             "(particles: (17, 17), size_m: (0.2, 0.2), material: CottonLawn,

@@ -57,7 +57,10 @@ fn creases_fold_to_their_side_in_any_direction() {
             advance(&mut cloth, 1.5);
             let folded = sign * angle(&cloth, from, to);
             println!("{fold} from {from:?} to {to:?}: {folded:.0}°");
-            assert!((40.0..130.0).contains(&folded), "{fold} {from:?} {to:?}: {folded}");
+            assert!(
+                (40.0..130.0).contains(&folded),
+                "{fold} {from:?} {to:?}: {folded}"
+            );
             assert_whole(&cloth, fold);
         }
     }

@@ -43,8 +43,16 @@ fn a_type_2_link_pushes_as_the_paper_says() {
         let r = LENGTH * f64::from(i) / 1000.0;
         let (force, slope) = paper(r);
         let pull = bend(r, LENGTH, K_B, STIFF);
-        assert!((pull.force / force - 1.0).abs() < 1e-9, "r = {r}: {} {force}", pull.force);
-        assert!((pull.stiffness / slope - 1.0).abs() < 1e-7, "r = {r}: {} {slope}", pull.stiffness);
+        assert!(
+            (pull.force / force - 1.0).abs() < 1e-9,
+            "r = {r}: {} {force}",
+            pull.force
+        );
+        assert!(
+            (pull.stiffness / slope - 1.0).abs() < 1e-7,
+            "r = {r}: {} {slope}",
+            pull.stiffness
+        );
     }
 }
 
@@ -53,8 +61,16 @@ fn a_type_2_link_that_is_almost_straight_pushes_as_eulers_column() {
     for z in [1e-6, 1e-9, 1e-12] {
         let pull = bend(LENGTH * (1.0 - z), LENGTH, K_B, 1e30);
         let (force, slope) = (-12.0 * K_B / LENGTH.powi(2), 7.2 * K_B / LENGTH.powi(3));
-        assert!((pull.force / force - 1.0).abs() < 1e-5, "{} {force}", pull.force);
-        assert!((pull.stiffness / slope - 1.0).abs() < 1e-4, "{} {slope}", pull.stiffness);
+        assert!(
+            (pull.force / force - 1.0).abs() < 1e-5,
+            "{} {force}",
+            pull.force
+        );
+        assert!(
+            (pull.stiffness / slope - 1.0).abs() < 1e-4,
+            "{} {slope}",
+            pull.stiffness
+        );
     }
     assert_eq!(bend(LENGTH, LENGTH, K_B, STIFF).force, 0.0);
     assert_eq!(bend(1.1 * LENGTH, LENGTH, K_B, STIFF).force, 0.0);
@@ -69,7 +85,10 @@ fn a_type_2_link_is_a_spring_until_it_buckles() {
         let (of_arc, of_spring) = (paper(r).0, c_b * (r - LENGTH));
         let expected = of_arc.max(of_spring);
         let pull = bend(r, LENGTH, K_B, c_b);
-        assert!((pull.force - expected).abs() < 1e-6 * expected.abs(), "r = {r}");
+        assert!(
+            (pull.force - expected).abs() < 1e-6 * expected.abs(),
+            "r = {r}"
+        );
         if of_spring > of_arc {
             springs += 1;
             assert_eq!(pull.stiffness, c_b);
@@ -93,7 +112,11 @@ fn stiffness_is_the_slope_of_the_force_and_force_that_of_the_energy() {
             let force = between(&|r| bend_energy(r, LENGTH, K_B, c_b));
             let scale = pull.stiffness.abs();
             assert!((slope - pull.stiffness).abs() < 1e-4 * scale, "r = {r}");
-            assert!((force - pull.force).abs() < 1e-5 * pull.force.abs(), "r = {r} {force} {}", pull.force);
+            assert!(
+                (force - pull.force).abs() < 1e-5 * pull.force.abs(),
+                "r = {r} {force} {}",
+                pull.force
+            );
         }
     }
     let (k, r) = (50.0, 1.03 * LENGTH);

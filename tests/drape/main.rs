@@ -35,7 +35,12 @@ fn assert_whole(drape: &Drape, what: &str) {
     let crossing = crossings(drape.positions(), &triangles, &drape.colliders().mesh);
     assert_eq!(crossing, [], "{what}: crossing after {} s", drape.time);
     let inside = sunk(drape.positions(), &triangles, drape.colliders());
-    assert_eq!(inside, [] as [usize; 0], "{what}: sunk after {} s", drape.time);
+    assert_eq!(
+        inside,
+        [] as [usize; 0],
+        "{what}: sunk after {} s",
+        drape.time
+    );
 }
 
 /// How far any particle is from where it was.

@@ -116,7 +116,10 @@ fn landers_cloth_pushes_where_chois_folds() {
         let links = Links::uniform(model, (9, 9), (0.01, 0.01), [100.0, 1e-6, 100.0, 0.0]);
         let (mut x, mut force) = (Rows::zero(9, 9, 3), Rows::zero(9, 9, 3));
         for i in 0..81_usize {
-            x.set_particle(i, DVec3::new(0.007 * (i % 9) as f64, 0.01 * (i / 9) as f64, 0.0));
+            x.set_particle(
+                i,
+                DVec3::new(0.007 * (i % 9) as f64, 0.01 * (i / 9) as f64, 0.0),
+            );
         }
         let mut response = Response::new((9, 9));
         response.compute(&links, &x, &Rows::zero(9, 9, 3), None);
@@ -144,7 +147,10 @@ fn pins_lead_where_they_are_told_and_let_go() {
     assert!(off(&cloth, DVec3::new(0.05, 0.02, 0.1)) < 1e-9);
     assert!(cloth.positions()[8].distance(begin[1]) > 0.05, "let go");
     advance(&mut cloth, 2.0);
-    assert!(off(&cloth, DVec3::ZERO) < 1e-9, "it stays after the last stop");
+    assert!(
+        off(&cloth, DVec3::ZERO) < 1e-9,
+        "it stays after the last stop"
+    );
 }
 
 /// A cloth that meets a ball and itself, in wind.
@@ -186,10 +192,18 @@ fn a_snapshot_leads_back_to_the_same_future() {
 fn the_plugin_follows_its_clock() {
     let mut app = App::new();
     app.add_plugins(DrapePlugin);
-    assert_eq!(drape_to(app.world_mut(), 1.0), Ok(()), "no cloth is no mistake");
+    assert_eq!(
+        drape_to(app.world_mut(), 1.0),
+        Ok(()),
+        "no cloth is no mistake"
+    );
     app.insert_resource(Draped::new(drape(LIVELY)));
     assert_eq!(drape_to(app.world_mut(), 0.3), Ok(()));
-    assert_eq!(drape_to(app.world_mut(), 0.1), Ok(()), "the past asks for nothing");
+    assert_eq!(
+        drape_to(app.world_mut(), 0.1),
+        Ok(()),
+        "the past asks for nothing"
+    );
     let mut alone = drape(LIVELY);
     advance(&mut alone, 0.3);
     let draped = app.world().resource::<Draped>();
@@ -200,16 +214,27 @@ fn the_plugin_follows_its_clock() {
 #[test]
 fn a_hand_draws_the_cloth_and_a_ray_finds_it() {
     let mut app = App::new();
-    app.add_plugins(DrapePlugin).insert_resource(Draped::new(drape(
-        "(particles: (17, 17), size_m: (0.2, 0.2), start: Hanging(top_m: (0, 1, 0)),
+    app.add_plugins(DrapePlugin)
+        .insert_resource(Draped::new(drape(
+            "(particles: (17, 17), size_m: (0.2, 0.2), start: Hanging(top_m: (0, 1, 0)),
           pins: [(at: Line((0, 0), (1, 0)), radius_m: 0)])",
-    )));
+        )));
     drape_to(app.world_mut(), 1.0).expect("it holds together");
     let mut draped = app.world_mut().resource_mut::<Draped>();
-    let hit = draped.hit(DVec3::new(0.03, 0.86, 1.0), DVec3::NEG_Z).expect("the cloth is there");
-    assert!((hit.uv - DVec2::new(0.65, 0.7)).length() < 0.01, "{}", hit.uv);
+    let hit = draped
+        .hit(DVec3::new(0.03, 0.86, 1.0), DVec3::NEG_Z)
+        .expect("the cloth is there");
+    assert!(
+        (hit.uv - DVec2::new(0.65, 0.7)).length() < 0.01,
+        "{}",
+        hit.uv
+    );
     assert!((hit.point.z - (1.0 - hit.distance)).abs() < 1e-12);
-    assert!(draped.hit(DVec3::new(0.3, 0.86, 1.0), DVec3::NEG_Z).is_none());
+    assert!(
+        draped
+            .hit(DVec3::new(0.3, 0.86, 1.0), DVec3::NEG_Z)
+            .is_none()
+    );
     let target = hit.point + DVec3::new(0.0, 0.02, 0.06);
     draped.hold(hit.particle, target);
     draped.hold(1_000_000, target);
@@ -222,7 +247,10 @@ fn a_hand_draws_the_cloth_and_a_ray_finds_it() {
     let fixed = draped.drape.positions()[200];
     drape_to(app.world_mut(), 4.0).expect("it holds together");
     let mut draped = app.world_mut().resource_mut::<Draped>();
-    assert!(draped.drape.positions()[hit.particle].distance(target) > 0.02, "let go");
+    assert!(
+        draped.drape.positions()[hit.particle].distance(target) > 0.02,
+        "let go"
+    );
     assert!(draped.drape.positions()[200].distance(fixed) < 1e-9);
     draped.unpin(200);
     assert_whole(&draped.drape, "held");
@@ -240,5 +268,8 @@ fn another_material_takes_over_while_the_cloth_moves() {
     cloth.set_material(&Material::Denim.measured());
     advance(&mut cloth, 2.0);
     let denim = end(&cloth);
-    assert!(denim > silk + 0.002, "denim stands out further: {silk} {denim}");
+    assert!(
+        denim > silk + 0.002,
+        "denim stands out further: {silk} {denim}"
+    );
 }

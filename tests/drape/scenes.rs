@@ -12,7 +12,8 @@ fn scene(name: &str, coarser: usize) -> Drape {
     let mut spec = parse(text(name).expect("it is bundled")).expect("it can be read");
     let (nx, ny) = spec.particles;
     spec.particles = ((nx - 1) / coarser + 1, (ny - 1) / coarser + 1);
-    spec.build((0.8, 0.9), 1, &Checker::root()).expect("it can be made")
+    spec.build((0.8, 0.9), 1, &Checker::root())
+        .expect("it can be made")
 }
 
 fn is_whole_after_ten_seconds(name: &str, coarser: usize) {
@@ -23,7 +24,10 @@ fn is_whole_after_ten_seconds(name: &str, coarser: usize) {
         assert_whole(&cloth, &format!("{name} after {} s", second + 1));
         most = most.max(cloth.stretched());
     }
-    println!("{name}, 1/{coarser}: stretched by {:.2} % at most", 100.0 * most);
+    println!(
+        "{name}, 1/{coarser}: stretched by {:.2} % at most",
+        100.0 * most
+    );
     assert!(most <= 0.05, "{name}: {most}");
 }
 

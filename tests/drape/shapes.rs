@@ -53,8 +53,10 @@ fn elastica(length: f64, weight_over_bending: f64) -> (f64, f64) {
             let s = (i as f64 + 0.5) * h;
             // The midpoint rule.
             let bend = |angle: f64, s: f64| -weight_over_bending * (length - s) * angle.cos();
-            let (angle_half, turn_half) =
-                (angle + 0.5 * h * turn, turn + 0.5 * h * bend(angle, s - 0.5 * h));
+            let (angle_half, turn_half) = (
+                angle + 0.5 * h * turn,
+                turn + 0.5 * h * bend(angle, s - 0.5 * h),
+            );
             drop += h * angle_half.sin();
             reach += h * angle_half.cos();
             angle += h * turn_half;
@@ -93,7 +95,10 @@ fn a_strip_held_at_one_end_bends_as_the_elastica() {
         let (drop, reach) = elastica(length, 0.13 * 9.81 / bending);
         let end = row[16] - DVec3::new(half - 0.05, 1.0, 0.0);
         let off = (end.x - reach).hypot(end.y + drop) / length;
-        println!("elastica, B = {bending}: its end is off by {:.2} % of its length", 100.0 * off);
+        println!(
+            "elastica, B = {bending}: its end is off by {:.2} % of its length",
+            100.0 * off
+        );
         assert!(off < 0.02, "{end} {drop} {reach}");
     }
 }
@@ -136,9 +141,17 @@ fn drape_coefficient(material: &str, particles: usize) -> f64 {
 #[test]
 fn the_drape_coefficient_falls_with_bending_stiffness_over_weight() {
     let cloth = |weight: f64, bending: f64| {
-        format!("Measured((weight: {weight}, bending: ({bending}, {bending}), stretch: (2500, 2500), shear: 40))")
+        format!(
+            "Measured((weight: {weight}, bending: ({bending}, {bending}), stretch: (2500, 2500), shear: 40))"
+        )
     };
-    let series = [(130.0, 1e-4), (130.0, 3e-5), (130.0, 1e-5), (130.0, 3e-6), (260.0, 3e-6)];
+    let series = [
+        (130.0, 1e-4),
+        (130.0, 3e-5),
+        (130.0, 1e-5),
+        (130.0, 3e-6),
+        (260.0, 3e-6),
+    ];
     let all = series.map(|(weight, bending)| drape_coefficient(&cloth(weight, bending), 33));
     println!("drape coefficients as B/weight falls: {all:.1?} %");
     for pair in all.windows(2) {
@@ -151,7 +164,9 @@ fn the_drape_coefficient_falls_with_bending_stiffness_over_weight() {
 fn the_drape_coefficient_does_not_depend_on_the_mesh() {
     for material in ["Denim", "Wool"] {
         let [coarse, fine] = [33, 65].map(|n| drape_coefficient(material, n));
-        println!("drape coefficient of {material}: {coarse:.1} % at 33 × 33, {fine:.1} % at 65 × 65");
+        println!(
+            "drape coefficient of {material}: {coarse:.1} % at 33 × 33, {fine:.1} % at 65 × 65"
+        );
         assert!((coarse - fine).abs() < 5.0, "{coarse} {fine}");
     }
 }

@@ -26,15 +26,33 @@ fn a_value_that_is_not_possible_is_named() {
         ("particles: (9, 40)", "particles"),
         ("size_m: (0, 1)", "size_m[0]"),
         ("material: Measured((weight: -1))", "material.weight"),
-        ("material: Measured((bending: (1, 1e9)))", "material.bending[1]"),
+        (
+            "material: Measured((bending: (1, 1e9)))",
+            "material.bending[1]",
+        ),
         ("pins: [(at: Point(2, 0))]", "pins[0].at[0]"),
-        ("pins: [(at: All, path: [(1, (0, 0, 0)), (1, (0, 0, 0))])]", "pins[0].path[1][0]"),
-        ("on: [Floor(), Ball(centre_m: (0, 0, 0), radius_m: 0)]", "on[1].radius_m"),
-        ("on: [Mesh(corners_m: [(0, 0, 0)], triangles: [(0, 0, 3)])]", "on[0].triangles[0][2]"),
-        ("on: [Mesh(corners_m: [(0, 0, 0)], triangles: [])]", "on[0].triangles"),
+        (
+            "pins: [(at: All, path: [(1, (0, 0, 0)), (1, (0, 0, 0))])]",
+            "pins[0].path[1][0]",
+        ),
+        (
+            "on: [Floor(), Ball(centre_m: (0, 0, 0), radius_m: 0)]",
+            "on[1].radius_m",
+        ),
+        (
+            "on: [Mesh(corners_m: [(0, 0, 0)], triangles: [(0, 0, 3)])]",
+            "on[0].triangles[0][2]",
+        ),
+        (
+            "on: [Mesh(corners_m: [(0, 0, 0)], triangles: [])]",
+            "on[0].triangles",
+        ),
         ("wind: (velocity: (0, 999, 0))", "wind.velocity[1]"),
         ("creases: [(from: (0, 0), to: (0, 0))]", "creases[0].to"),
-        ("creases: [(from: (0, 0), to: (1, 1), angle: 179)]", "creases[0].angle"),
+        (
+            "creases: [(from: (0, 0), to: (1, 1), angle: 179)]",
+            "creases[0].angle",
+        ),
         ("settle_s: -1", "settle_s"),
         ("solver: (step_s: 0)", "solver.step_s"),
         ("solver: (apart_mm: 1e3)", "solver.apart_mm"),
@@ -51,11 +69,22 @@ fn a_value_that_is_not_possible_is_named() {
 
 #[test]
 fn a_word_that_is_not_known_is_named() {
-    for bad in ["colour: 3", "solver: (stepp: 1)", "material: Velvet", "pins: [(where: All)]"] {
+    for bad in [
+        "colour: 3",
+        "solver: (stepp: 1)",
+        "material: Velvet",
+        "pins: [(where: All)]",
+    ] {
         let text = format!("(start: Flat(centre_m: (0, 1, 0)), {bad})");
         let error = parse(&text).expect_err(bad).to_string();
-        let word = bad.split(['(', ':', '[']).find(|w| text.contains(*w)).unwrap_or_default();
-        assert!(error.contains("expected") || error.contains("Unexpected") || error.contains(word), "{error}");
+        let word = bad
+            .split(['(', ':', '['])
+            .find(|w| text.contains(*w))
+            .unwrap_or_default();
+        assert!(
+            error.contains("expected") || error.contains("Unexpected") || error.contains(word),
+            "{error}"
+        );
     }
 }
 
@@ -74,10 +103,16 @@ fn stiff_cloth_dropped_from_a_hundred_metres_with_steps_of_a_second_holds_or_say
                 break;
             }
         }
-        assert!(cloth.positions().iter().all(|x| x.is_finite()), "{integrator}");
+        assert!(
+            cloth.positions().iter().all(|x| x.is_finite()),
+            "{integrator}"
+        );
         match (integrator, failed) {
             ("Euler" | "RungeKutta", Some(error)) => {
-                assert!(error.contains("flew apart") && error.contains("Bdf2"), "{error}");
+                assert!(
+                    error.contains("flew apart") && error.contains("Bdf2"),
+                    "{error}"
+                );
             }
             ("Euler" | "RungeKutta", None) => {}
             (_, failed) => {

@@ -67,7 +67,10 @@ pub fn filter(
     let proposed: Vec<DVec3> = moves.to_vec();
     let mut base = proposed;
     let mut refresh = |moves: &[DVec3], base: &mut Vec<DVec3>, pairs: &mut Vec<Pair>| {
-        let left = moves.iter().zip(base.iter()).any(|(a, b)| (*a - *b).length_squared() > slack * slack);
+        let left = moves
+            .iter()
+            .zip(base.iter())
+            .any(|(a, b)| (*a - *b).length_squared() > slack * slack);
         if left {
             *pairs = again(moves);
             base.clear();
@@ -99,7 +102,9 @@ pub fn filter(
     let mut patience = 10;
     while !hits.is_empty() || !over_balls.is_empty() {
         let of_pairs = hits.iter().map(|(time, pair)| (*time, pair.corners()));
-        let of_balls = over_balls.iter().map(|(time, [a, b, c])| (*time, [*a, *a, *b, *c]));
+        let of_balls = over_balls
+            .iter()
+            .map(|(time, [a, b, c])| (*time, [*a, *a, *b, *c]));
         let all: Vec<(f64, [u32; 4])> = of_pairs.chain(of_balls).collect();
         for (_, corners) in &all {
             zones.join(corners.iter().copied().filter(|i| bodies.is_cloth(*i)));
@@ -158,7 +163,11 @@ impl Bodies<'_> {
 fn touching(bodies: Bodies, pairs: &[Pair], moves: &[DVec3]) -> Vec<(f64, Pair)> {
     let meet = |pair: &Pair| {
         let corners = pair.corners().map(|i| i as usize);
-        let time = time_of_impact(*pair, corners.map(|i| bodies.from[i]), corners.map(|i| moves[i]));
+        let time = time_of_impact(
+            *pair,
+            corners.map(|i| bodies.from[i]),
+            corners.map(|i| moves[i]),
+        );
         time.map(|time| (time, *pair))
     };
     let found: Vec<Vec<(f64, Pair)>> = pairs
@@ -201,13 +210,16 @@ fn meeting_balls(bodies: Bodies, moves: &[DVec3]) -> Vec<(f64, [u32; 3])> {
         if is_covered(from) && is_covered(to) {
             return None;
         }
-        let times = balls.iter().filter_map(|ball| time_to_ball(*ball, from, by));
+        let times = balls
+            .iter()
+            .filter_map(|ball| time_to_ball(*ball, from, by));
         let first = times.fold(f64::INFINITY, f64::min);
         first.is_finite().then_some((first, *t))
     };
     let chunks = bodies.triangles.par_chunks(1024);
-    let found: Vec<Vec<(f64, [u32; 3])>> =
-        chunks.map(|part| part.iter().filter_map(meet).collect()).collect();
+    let found: Vec<Vec<(f64, [u32; 3])>> = chunks
+        .map(|part| part.iter().filter_map(meet).collect())
+        .collect();
     found.into_iter().flatten().collect()
 }
 

@@ -82,7 +82,11 @@ impl Mesh {
             mesh.corners.push(sum / ring.len() as f64);
             for i in 0..ring.len() {
                 let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-                let triangle = if is_top { [middle, b, a] } else { [middle, a, b] };
+                let triangle = if is_top {
+                    [middle, b, a]
+                } else {
+                    [middle, a, b]
+                };
                 mesh.triangles.push(triangle);
             }
         }
@@ -121,7 +125,10 @@ impl MeshTree {
         let bounds: Vec<Box3> = mesh
             .triangles
             .iter()
-            .map(|t| t.iter().fold(Box3::EMPTY, |b, i| b.with(mesh.corners[*i as usize])))
+            .map(|t| {
+                t.iter()
+                    .fold(Box3::EMPTY, |b, i| b.with(mesh.corners[*i as usize]))
+            })
             .collect();
         let mut all: Vec<u32> = (0..bounds.len() as u32).collect();
         let mut tree = MeshTree::default();

@@ -41,18 +41,21 @@ impl Parts {
     fn of_cell(&mut self, parts: CellParts, motion: Motion) {
         self.clear();
         let corners = parts.corner.into_iter();
-        self.corners.extend(corners.map(|c| (c, motion.bounds(&[c]))));
+        self.corners
+            .extend(corners.map(|c| (c, motion.bounds(&[c]))));
         let edges = parts.edges.into_iter().flatten();
         self.edges.extend(edges.map(|e| (e, motion.bounds(&e))));
         let triangles = parts.triangles.into_iter().flatten();
-        self.triangles.extend(triangles.map(|t| (t, motion.bounds(&t))));
+        self.triangles
+            .extend(triangles.map(|t| (t, motion.bounds(&t))));
     }
 
     fn of_triangle(&mut self, colliders: &Colliders, triangle: u32, first: u32, motion: Motion) {
         self.clear();
         let (corners, edges) = colliders.owned(triangle);
         let corners = corners.into_iter().flatten().map(|c| c + first);
-        self.corners.extend(corners.map(|c| (c, motion.bounds(&[c]))));
+        self.corners
+            .extend(corners.map(|c| (c, motion.bounds(&[c]))));
         let edges = edges.into_iter().flatten().map(|e| e.map(|i| i + first));
         self.edges.extend(edges.map(|e| (e, motion.bounds(&e))));
         let t = colliders.mesh.triangles[triangle as usize].map(|i| i + first);

@@ -86,6 +86,9 @@ impl Topology {
     /// All triangles.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let cells = 0..self.cloth.len() as u32;
-        cells.flat_map(|cell| self.parts(cell).triangles).flatten().collect()
+        cells
+            .flat_map(|cell| self.parts(cell).triangles)
+            .flatten()
+            .collect()
     }
 }

@@ -95,7 +95,12 @@ impl Tree {
             }
             for at in [from, to] {
                 let corner = |x: usize, y: usize| at[y * nx + x];
-                let corners = [corner(x, y), corner(right, y), corner(x, below), corner(right, below)];
+                let corners = [
+                    corner(x, y),
+                    corner(right, y),
+                    corner(x, below),
+                    corner(right, below),
+                ];
                 for corner in corners {
                     node.bounds = node.bounds.with(corner);
                 }
@@ -278,8 +283,5 @@ impl Node {
 fn least_and_most(f: &Box3, a: DVec3) -> (f64, f64) {
     let (low, high) = (f.low * a, f.high * a);
     let (least, most) = (low.min(high), low.max(high));
-    (
-        least.x + least.y + least.z,
-        most.x + most.y + most.z,
-    )
+    (least.x + least.y + least.z, most.x + most.y + most.z)
 }
