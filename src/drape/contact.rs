@@ -233,24 +233,24 @@ pub fn apply(contacts: &[Contact], mass: &Rows<f32>, u: &Rows<f32>, out: &mut Ro
             [u.get(x, y, 0), u.get(x, y, 1), u.get(x, y, 2)]
         });
         let mut all = [0.0; 3];
-        for i in 0..4 {
+        for (i, at) in at.iter().enumerate() {
             for c in 0..3 {
-                all[c] += contact.shares[i] * at[i][c];
+                all[c] += contact.shares[i] * at[c];
             }
         }
-        for i in 0..4 {
+        for (i, at) in at.iter().enumerate() {
             let w = contact.shares[i];
             if w == 0.0 {
                 continue;
             }
             let (x, y) = places[i];
-            let others = [0, 1, 2].map(|c| all[c] - w * at[i][c]);
+            let others = [0, 1, 2].map(|c| all[c] - w * at[c]);
             let force = times(contact.block, others);
             let free = mass.get(x, y, 1);
             for c in 0..3 {
                 let force = w * force[c] * free;
                 *out.get_mut(x, y, c) += force;
-                sum += f64::from(force * at[i][c]);
+                sum += f64::from(force * at[c]);
             }
         }
     }

@@ -71,7 +71,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             integrator: Integrator::Bdf2,
-            step: 1.0 / 240.0,
+            step: 1.0 / 180.0,
             tolerance: 1e-3,
             iterations: 40,
             gravity: DVec3::new(0.0, -9.81, 0.0),
@@ -439,6 +439,7 @@ impl Drape {
         let triangles = std::mem::take(&mut self.triangles);
         let (one, two) = self.sheet.links.spacing;
         let (leg, shorter) = (one.max(two), one.min(two));
+        let diagonal = self.sheet.links.length(2);
         let bodies = Bodies {
             particles: self.state.x.len(),
             from: &from,
@@ -448,10 +449,7 @@ impl Drape {
             exact: &exact,
             covered,
             triangles: &triangles,
-            longest: [
-                (1.05 * leg).powi(2),
-                (1.1 * self.sheet.links.length(2)).powi(2),
-            ],
+            longest: [1.05 * 1.05 * leg * leg, 1.21 * diagonal * diagonal],
         };
         moves.resize(from.len(), DVec3::ZERO);
         for i in 0..bodies.particles {

@@ -136,6 +136,16 @@ impl Implicit {
             contacts: &self.contacts,
         };
         self.yarns.factor(&system);
+        if state.last_step.is_none() {
+            // Falling as one is what rounding errors of very stiff links would hide.
+            let fall = given.settings.gravity * (h * h);
+            let nx = sheet.links.particles.0;
+            for i in (0..state.x.len()).filter(|i| given.mobility[*i] > 0.0) {
+                for (c, by) in fall.to_array().into_iter().enumerate() {
+                    *self.guesses[0].get_mut(i % nx, i / nx, c) = by as f32;
+                }
+            }
+        }
         let [last, before] = &self.guesses;
         self.solver.begin(&system, [last, before], &mut self.u);
         let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);

@@ -136,7 +136,8 @@ pub fn bend(r: f64, length: f64, k_b: f64, c_b: f64) -> Pull {
 
 /// The energy of a type 1 link, J.
 pub fn stretch_energy(r: f64, length: f64, k: f64) -> f64 {
-    0.5 * k * (r - length).max(0.0).powf(2.0)
+    let longer = (r - length).max(0.0);
+    0.5 * k * longer * longer
 }
 
 /// The energy of a link of Lander's model, J.

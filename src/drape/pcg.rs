@@ -91,7 +91,7 @@ impl Work {
         let mut iterations = 0;
         while iterations < most && rz > tolerance * tolerance * begin && rz > 0.0 {
             let pq = system.apply(p, q);
-            if !(pq > 0.0) {
+            if pq.is_nan() || pq <= 0.0 {
                 break;
             }
             let alpha = rz / pq;

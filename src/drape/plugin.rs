@@ -112,7 +112,7 @@ fn follow_clock(clock: Res<DrapeClock>, mut draped: ResMut<Draped>) {
     }
     let seconds = clock.asked_s - draped.time();
     // Less than this is what is left of adding up steps.
-    if !(seconds > 1e-9) {
+    if seconds.is_nan() || seconds <= 1e-9 {
         return;
     }
     if let Err(error) = draped.drape.advance(seconds) {

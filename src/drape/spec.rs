@@ -249,7 +249,7 @@ impl Default for SolverSpec {
     fn default() -> Self {
         SolverSpec {
             integrator: Integrator::Bdf2,
-            step_s: 1.0 / 240.0,
+            step_s: 1.0 / 180.0,
             tolerance: 1e-3,
             iterations: 40,
             apart_mm: 1.0,

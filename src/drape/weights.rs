@@ -134,7 +134,7 @@ fn buckles_soon(measured: &Measured, k_b: f64, length: f64) -> f64 {
         return 0.0;
     }
     let curvature = EARLY * libm::cbrt(9.81 * measured.weight / bending);
-    288.0 * k_b / (curvature * curvature * length.powi(5))
+    288.0 * k_b / (curvature * curvature * length * length * length * length * length)
 }
 
 /// The share of its balanced curvature at which cloth has buckled.

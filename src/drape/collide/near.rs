@@ -68,6 +68,18 @@ impl Parts {
         self.triangles.clear();
     }
 
+    /// Adds the pairs of a cell's corner and those of its triangles that it is no corner of.
+    fn corner_with_own(&self, margin: f64, found: &mut Vec<Pair>) {
+        for (p, bounds) in &self.corners {
+            let bounds = bounds.grown(margin);
+            for (t, other) in &self.triangles {
+                if bounds.meets(other) && !t.contains(p) {
+                    found.push(Pair::PointTriangle([*p, t[0], t[1], t[2]]));
+                }
+            }
+        }
+    }
+
     /// Adds the pairs of these parts whose boxes, grown by `margin`, meet and that share no corner.
     fn pair_with(&self, other: &Parts, margin: f64, found: &mut Vec<Pair>) {
         for (one, two) in [(self, other), (other, self)] {
@@ -102,6 +114,10 @@ pub fn with_itself(topology: &Topology, tree: &Tree, motion: Motion, margin: f64
             let mut found = Vec::new();
             for (one, two) in meetings {
                 a.of_cell(topology.parts(*one), motion);
+                if one == two {
+                    a.corner_with_own(margin, &mut found);
+                    continue;
+                }
                 b.of_cell(topology.parts(*two), motion);
                 a.pair_with(&b, margin, &mut found);
             }

@@ -194,7 +194,13 @@ impl Tree {
         found: &mut Vec<(u32, u32)>,
     ) {
         if a == b {
-            if a.0 == 0 || self.node(a).is_smooth() {
+            if self.node(a).is_smooth() {
+                return;
+            }
+            if a.0 == 0 {
+                // Its corner may go through its own second triangle.
+                let number = (a.2 * self.particles.0 + a.1) as u32;
+                found.push((number, number));
                 return;
             }
             let children = self.children(a);
