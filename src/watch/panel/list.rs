@@ -68,8 +68,8 @@ impl Pass<'_> {
             let room = ui.available_width() - 3.0 * 24.0;
             ui.add_space(room.max(0.0));
             for (text, tip, is_on, what) in [
-                ("↑", "Move up", i > 0, Done::Up),
-                ("↓", "Move down", i + 1 < count, Done::Down),
+                ("⬆", "Move up", i > 0, Done::Up),
+                ("⬇", "Move down", i + 1 < count, Done::Down),
                 ("×", "Take out", out, Done::Out),
             ] {
                 let button = egui::Button::new(text).min_size(egui::vec2(HEIGHT, HEIGHT));

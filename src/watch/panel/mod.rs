@@ -124,6 +124,7 @@ pub fn parameters(
     scenario: &mut Scenario,
     state: &mut PanelState,
 ) -> Option<Change> {
+    let before = before(ui, scenario, state);
     let mut pass = Pass::new(scenario, state);
     row::style(ui);
     pass.search_field(ui);
@@ -139,12 +140,13 @@ pub fn parameters(
             drape::show(&mut pass, ui, scenario);
             pass.nothing_found(ui);
         });
-    finish(pass, ui, scenario)
+    finish(pass, ui, before, scenario)
 }
 
 /// The weave editor: the matrix to click, its repeat, moves, named weaves and drafts, and the cloth that
 /// it gives. Edits `scenario` in place; returns what changed.
 pub fn weave(ui: &mut egui::Ui, scenario: &mut Scenario, state: &mut PanelState) -> Option<Change> {
+    let before = before(ui, scenario, state);
     let mut editor = std::mem::take(&mut state.weave);
     let mut pass = Pass::new(scenario, state);
     pass.ignore_search();
@@ -155,14 +157,29 @@ pub fn weave(ui: &mut egui::Ui, scenario: &mut Scenario, state: &mut PanelState)
         .show(ui, |ui| {
             weave::show(&mut pass, ui, scenario, &mut editor);
         });
-    let change = finish(pass, ui, scenario);
+    let change = finish(pass, ui, before, scenario);
     state.weave = editor;
     change
 }
 
-fn finish(pass: Pass, ui: &egui::Ui, scenario: &mut Scenario) -> Option<Change> {
+/// The scenario before a pass in which it may change: one with input.
+fn before(ui: &egui::Ui, scenario: &Scenario, state: &PanelState) -> Option<Scenario> {
+    let is_busy = ui.input(|input| !input.events.is_empty() || input.pointer.any_down());
+    (is_busy || state.pull.is_some()).then(|| scenario.clone())
+}
+
+fn finish(
+    pass: Pass,
+    ui: &egui::Ui,
+    before: Option<Scenario>,
+    scenario: &mut Scenario,
+) -> Option<Change> {
     let (label, typed) = pass.end()?;
     mend::mend(scenario);
+    if before.is_some_and(|before| before == *scenario) {
+        // The same was chosen again, or a file is asked for.
+        return None;
+    }
     let held = typed || ui.input(|input| input.pointer.any_down());
     Some(Change { label, held })
 }

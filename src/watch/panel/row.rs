@@ -183,6 +183,7 @@ impl<'s> Pass<'s> {
         self.typed = true;
     }
 
+    /// Asks for a picture. Until there is one nothing changes.
     pub fn ask_image(&mut self, path: String) {
         self.state.ask = Some(PanelAsk::OpenImage { path });
     }

@@ -118,7 +118,7 @@ impl Pass<'_> {
             }
         });
         if is_there != value.is_some() {
-            *value = is_there.then_some(instead);
+            *value = is_there.then_some(instead.clamp(*range.start(), *range.end()));
         }
     }
 

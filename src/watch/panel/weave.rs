@@ -72,6 +72,11 @@ impl WeaveState {
 
 /// The kinds of weave with their parameters.
 pub(super) fn rows(p: &mut Pass, ui: &mut Ui, cloth: &mut ClothSpec) {
+    kinds(p, ui, cloth);
+    parameters(p, ui, &mut cloth.weave);
+}
+
+fn kinds(p: &mut Pass, ui: &mut Ui, cloth: &mut ClothSpec) {
     let named = row(
         "named weave",
         "Sets the weave to one that weavers have a name for.",
@@ -122,7 +127,6 @@ pub(super) fn rows(p: &mut Pass, ui: &mut Ui, cloth: &mut ClothSpec) {
         Some(_) => p.ask_image("cloth.weave.file".into()),
         None => {}
     }
-    parameters(p, ui, &mut cloth.weave);
 }
 
 fn parameters(p: &mut Pass, ui: &mut Ui, weave: &mut Weave) {
@@ -246,26 +250,30 @@ fn drawn(ends: usize, picks: usize, up: impl Fn(usize, usize) -> bool) -> Weave 
     Weave::Matrix((0..picks).map(pick).collect())
 }
 
-/// The whole editor.
+/// The whole editor. The matrix stands where no choice moves it.
 pub(super) fn show(p: &mut Pass, ui: &mut Ui, scenario: &mut Scenario, state: &mut WeaveState) {
     p.heading("weave");
-    ui.push_id("editor", |ui| rows(p, ui, &mut scenario.cloth));
+    ui.push_id("kinds", |ui| kinds(p, ui, &mut scenario.cloth));
+    state.grid = None;
+    let weave = &mut scenario.cloth.weave;
+    let matrix = state.matrix(weave);
+    let small = |matrix: &&Arc<WeaveMatrix>| matrix.ends().max(matrix.picks()) <= LARGEST_EDITED;
+    match &matrix {
+        None => p.say(ui, "Only its file says what this weave is like."),
+        Some(_) if matrix.as_ref().filter(small).is_none() => {
+            p.say(ui, "Its repeat is too large to be drawn here.");
+        }
+        Some(matrix) => {
+            grid(p, ui, weave, matrix, state);
+            moves(p, ui, weave, matrix);
+            repeat_rows(p, ui, weave, matrix);
+        }
+    }
+    ui.push_id("parameters", |ui| parameters(p, ui, weave));
     if p.button(ui, "Load a WIF…", "Reads a weaver's draft") {
         p.state.ask = Some(PanelAsk::OpenWif);
     }
-    state.grid = None;
-    let weave = &mut scenario.cloth.weave;
-    let Some(matrix) = state.matrix(weave) else {
-        p.say(ui, "Only its file says what this weave is like.");
-        return;
-    };
-    if matrix.ends().max(matrix.picks()) > LARGEST_EDITED {
-        p.say(ui, "Its repeat is too large to be drawn here.");
-    } else {
-        repeat_rows(p, ui, weave, &matrix);
-        moves(p, ui, weave, &matrix);
-        grid(p, ui, weave, &matrix, state);
-    }
+    let Some(matrix) = matrix else { return };
     preview(ui, &matrix);
     if let Some((_, _, [warp, weft])) = &state.known {
         let text = format!(
@@ -318,16 +326,16 @@ fn moves(p: &mut Pass, ui: &mut Ui, weave: &mut Weave, matrix: &WeaveMatrix) {
             }
             pressed
         };
-        if button("←", "Shift to the left") {
+        if button("⬅", "Shift to the left") {
             *weave = drawn(n, m, |e, p| up(e + 1, p));
         }
-        if button("→", "Shift to the right") {
+        if button("➡", "Shift to the right") {
             *weave = drawn(n, m, |e, p| up(e + n - 1, p));
         }
-        if button("↑", "Shift up") {
+        if button("⬆", "Shift up") {
             *weave = drawn(n, m, |e, p| up(e, p + 1));
         }
-        if button("↓", "Shift down") {
+        if button("⬇", "Shift down") {
             *weave = drawn(n, m, |e, p| up(e, p + m - 1));
         }
         if button("Rotate", "Rotate by a quarter turn: warp becomes weft") {
@@ -336,10 +344,10 @@ fn moves(p: &mut Pass, ui: &mut Ui, weave: &mut Weave, matrix: &WeaveMatrix) {
         if button("Invert", "Invert: what was up is down") {
             *weave = drawn(n, m, |e, p| !up(e, p));
         }
-        if button("Mirror ↔", "Mirror left and right") {
+        if button("Mirror", "Mirror left and right") {
             *weave = drawn(n, m, |e, p| up(n - 1 - e, p));
         }
-        if button("Mirror ↕", "Mirror top and bottom") {
+        if button("Flip", "Mirror top and bottom") {
             *weave = drawn(n, m, |e, p| up(e, m - 1 - p));
         }
     });
@@ -388,7 +396,8 @@ fn grid(
     // A stroke sets all it passes to what its first crossing becomes.
     let pointed = response.interact_pointer_pos().and_then(at);
     let mut set = None;
-    if response.is_pointer_button_down_on() || response.clicked() {
+    let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
+    if response.is_pointer_button_down_on() && (moved || state.paints.is_none()) {
         if let Some((e, p)) = pointed {
             let paints = *state.paints.get_or_insert(!matrix.warp_up(e, p));
             set = Some((e, p, paints));
