@@ -1,0 +1,96 @@
+//! Lists: what is added, taken out, and moved up and down.
+
+use bevy_egui::egui::{self, Ui};
+
+use super::row::{HEIGHT, Kind, Pass, Row, VALUE};
+
+/// What is done to one element of a list.
+enum Done {
+    Up,
+    Down,
+    Out,
+}
+
+impl Pass<'_> {
+    /// A list that has between `least` and `most` elements. `names` can be added, made by `make`.
+    #[allow(clippy::too_many_arguments)]
+    pub fn list<T>(
+        &mut self,
+        ui: &mut Ui,
+        row: &Row,
+        items: &mut Vec<T>,
+        (least, most): (usize, usize),
+        title: impl Fn(&T) -> String,
+        names: &[&str],
+        make: impl FnOnce(usize) -> Option<T>,
+        mut show: impl FnMut(&mut Self, &mut Ui, usize, &mut T),
+    ) {
+        let mut done = None;
+        let count = items.len();
+        for (i, item) in items.iter_mut().enumerate() {
+            let title = format!("{}. {}", i + 1, title(item));
+            ui.push_id((row.name, i), |ui| {
+                self.fold(ui, &title, |p, ui| {
+                    let moved = p.moves(ui, row, i, count, count > least);
+                    if let Some(moved) = moved {
+                        done = Some((i, moved));
+                    }
+                    p.indented(ui, |p, ui| show(p, ui, i, item));
+                });
+            });
+        }
+        match done {
+            Some((i, Done::Up)) => items.swap(i - 1, i),
+            Some((i, Done::Down)) => items.swap(i, i + 1),
+            Some((i, Done::Out)) => {
+                items.remove(i);
+            }
+            None => {}
+        }
+        if items.len() < most {
+            let added = self.row(ui, row, |p, ui| {
+                p.pick(ui, row.name, usize::MAX, names, VALUE)
+            });
+            if let Some(new) = added.flatten().and_then(make) {
+                items.push(new);
+                self.change(row.name);
+            }
+        }
+    }
+
+    /// The buttons that move an element and take it out.
+    fn moves(&mut self, ui: &mut Ui, row: &Row, i: usize, count: usize, out: bool) -> Option<Done> {
+        if self.searching() {
+            return None;
+        }
+        let mut done = None;
+        ui.horizontal(|ui| {
+            let room = ui.available_width() - 3.0 * 24.0;
+            ui.add_space(room.max(0.0));
+            for (text, tip, is_on, what) in [
+                ("⬆", "Move up", i > 0, Done::Up),
+                ("⬇", "Move down", i + 1 < count, Done::Down),
+                ("×", "Take out", out, Done::Out),
+            ] {
+                let button = egui::Button::new(text).min_size(egui::vec2(HEIGHT, HEIGHT));
+                let clicked = ui.add_enabled(is_on, button).on_hover_text(tip).clicked();
+                let pulled = is_on && self.control(tip, Kind::Button).is_some();
+                if clicked || pulled {
+                    done = Some(what);
+                    self.change(row.name);
+                }
+            }
+        });
+        done
+    }
+
+    /// Rows a little to the right, with a line beside them.
+    pub fn indented(&mut self, ui: &mut Ui, add: impl FnOnce(&mut Self, &mut Ui)) {
+        if self.searching() {
+            add(self, ui);
+            return;
+        }
+        ui.spacing_mut().indent = 8.0;
+        ui.indent("parts", |ui| add(self, ui));
+    }
+}
