@@ -5,11 +5,11 @@ use bevy_egui::egui::Ui;
 use super::mend::LONGEST;
 use super::presets;
 use super::row::{Pass, row};
-use crate::pattern::{Fit, Pattern};
+use crate::pattern::{Fit, Pattern, Stroke};
 use crate::scenario::{BatikStep, Length, Scenario, SupplySpec};
 
 /// The kinds of pattern, in the order in which they are offered.
-const KINDS: [&str; 19] = [
+const KINDS: [&str; 20] = [
     "nothing",
     "everywhere",
     "picture",
@@ -29,6 +29,7 @@ const KINDS: [&str; 19] = [
     "inverse of",
     "blurred",
     "weakened",
+    "strokes",
 ];
 
 /// How deep patterns may lie within each other here.
@@ -55,6 +56,7 @@ fn kind(pattern: &Pattern) -> usize {
         Pattern::Invert(_) => 16,
         Pattern::Blur { .. } => 17,
         Pattern::Strength { .. } => 18,
+        Pattern::Strokes(_) => 19,
     }
 }
 
@@ -135,10 +137,14 @@ fn of_kind(kind: usize, was: Pattern, (width, height): (f64, f64)) -> Pattern {
             of: part(),
             radius: Length::Cells(1.0),
         },
-        _ => Pattern::Strength {
+        18 => Pattern::Strength {
             of: part(),
             by: 0.9,
         },
+        _ => Pattern::Strokes(vec![Stroke::along(
+            cells(0.05),
+            vec![(0.3, 0.5), (0.7, 0.5)],
+        )]),
     }
 }
 
@@ -173,7 +179,7 @@ fn node(p: &mut Pass, ui: &mut Ui, name: &str, pattern: &mut Pattern, path: &str
                 if let Some(resist) = presets::scenario(name).map(|scenario| scenario.resist) {
                     *pattern = resist;
                 }
-            } else if chosen < 13 || depth < DEEPEST {
+            } else if chosen < 13 || chosen == 19 || depth < DEEPEST {
                 *pattern = of_kind(chosen, std::mem::take(pattern), p.cells);
             }
         }
@@ -256,6 +262,31 @@ fn combination(p: &mut Pass, ui: &mut Ui, pattern: &mut Pattern, path: &str, dep
     }
 }
 
+/// Strokes of the brush: what may be changed of them afterwards; where they went stays.
+fn strokes_rows(p: &mut Pass, ui: &mut Ui, strokes: &mut Vec<Stroke>) {
+    let radius = row("radius", "From the middle of the brush to its edge.");
+    let hardness = row(
+        "hardness",
+        "The share of the radius up to which all of the stroke is there: 1 for a sharp edge.",
+    );
+    let strength = row("strength", "How much there is in the middle of the stroke.");
+    let mut gone = None;
+    for (i, stroke) in strokes.iter_mut().enumerate() {
+        ui.push_id(i, |ui| {
+            p.length(ui, &radius, &mut stroke.radius, 0.05, LONGEST);
+            p.number(ui, &hardness, &mut stroke.hardness, 0.0..=1.0);
+            p.number(ui, &strength, &mut stroke.strength, 0.0..=1.0);
+            if p.button(ui, "Remove the stroke", "Takes this stroke away") {
+                gone = Some(i);
+            }
+        });
+    }
+    if let Some(i) = gone {
+        strokes.remove(i);
+        p.change("pattern");
+    }
+}
+
 fn shape_rows(p: &mut Pass, ui: &mut Ui, pattern: &mut Pattern, path: &str) {
     const THIN: f64 = 1e-3;
     let width_row = row("width", "How wide each one is.");
@@ -267,6 +298,7 @@ fn shape_rows(p: &mut Pass, ui: &mut Ui, pattern: &mut Pattern, path: &str) {
     .unit("°")
     .scale(45.0);
     match pattern {
+        Pattern::Strokes(strokes) => strokes_rows(p, ui, strokes),
         Pattern::Image { file, fit } => {
             let file_row = row(
                 "file",
