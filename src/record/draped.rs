@@ -66,7 +66,7 @@ impl Draped {
         things::spawn(world, &Furniture::of(&hung.spec, &hung.drape));
         let way = Way::new(&hung.view, &subject);
         light::spawn(world, &hung.view, &subject, Quality::Fine);
-        let bundle = light::camera(world, &hung.view);
+        let bundle = light::camera(world, &hung.view, Quality::Fine);
         let offscreen = Offscreen::new(world, hung.view.pixels, bundle);
         let shapes = cloth::shapes(&hung.front());
         world.resource_scope(|world, picture: Mut<Picture>| {

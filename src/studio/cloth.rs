@@ -66,25 +66,36 @@ pub fn mesh(fine: &Fine) -> Mesh {
     .with_inserted_indices(Indices::U32(indices))
 }
 
-fn sampler() -> ImageSampler {
+fn sampler(anisotropy: u16) -> ImageSampler {
     ImageSampler::Descriptor(ImageSamplerDescriptor {
         address_mode_u: ImageAddressMode::ClampToEdge,
         address_mode_v: ImageAddressMode::ClampToEdge,
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
         mipmap_filter: ImageFilterMode::Linear,
-        anisotropy_clamp: 8,
+        anisotropy_clamp: anisotropy,
         ..default()
     })
 }
 
 /// RGB bytes as an image for the renderer, with all its halves.
 pub fn image(rgb: &[u8], width: usize, height: usize, kind: Kind) -> Image {
-    image_of_levels(mips::chain(rgb, width, height, kind), width, height, kind)
+    let levels = mips::chain(rgb, width, height, kind);
+    image_of_levels(levels, (width, height), kind, FINE)
 }
 
-/// A picture and its halves ([`mips::chain`]) as an image for the renderer.
-pub fn image_of_levels(levels: Vec<u8>, width: usize, height: usize, kind: Kind) -> Image {
+/// How finely cloth that is seen at a slant is sampled in recordings, and in the window with a driver
+/// that draws on a graphics card.
+pub const FINE: u16 = 8;
+
+/// A picture and its halves ([`mips::chain`]) as an image for the renderer, with so many samples where it
+/// is seen at a slant.
+pub fn image_of_levels(
+    levels: Vec<u8>,
+    (width, height): (usize, usize),
+    kind: Kind,
+    anisotropy: u16,
+) -> Image {
     let format = match kind {
         Kind::Colour => TextureFormat::Rgba8UnormSrgb,
         Kind::Normal => TextureFormat::Rgba8Unorm,
@@ -101,7 +112,7 @@ pub fn image_of_levels(levels: Vec<u8>, width: usize, height: usize, kind: Kind)
     );
     image.texture_descriptor.mip_level_count = mips::levels(width, height);
     image.data = Some(levels);
-    image.sampler = sampler();
+    image.sampler = sampler(anisotropy);
     // Bevy writes only the first level into a texture that it can copy to; this one it makes anew.
     image.texture_descriptor.usage = TextureUsages::TEXTURE_BINDING;
     image

@@ -10,10 +10,12 @@ use std::f64::consts::TAU;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::{
     CascadeShadowConfigBuilder, DirectionalLightShadowMap, EnvironmentMapLight, NotShadowCaster,
+    ShadowFilteringMethod,
 };
 use bevy::math::{DVec2, DVec3};
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
+use bevy::render::renderer::RenderAdapterInfo;
 
 use super::camera::Subject;
 use crate::scenario::ViewSpec;
@@ -35,6 +37,19 @@ pub enum Quality {
     Fine,
     /// For the window: one lamp.
     Fast,
+    /// For the window where the processor draws: besides, edges are not smoothed, and shadows hardly.
+    Software,
+}
+
+impl Quality {
+    /// What the window can have with the driver of a world.
+    pub fn for_window(world: &World) -> Self {
+        let info = world.get_resource::<RenderAdapterInfo>();
+        match info.is_some_and(|info| info.device_type == wgpu::DeviceType::Cpu) {
+            true => Quality::Software,
+            false => Quality::Fast,
+        }
+    }
 }
 
 /// The lamp and its parts.
@@ -49,7 +64,8 @@ pub struct Ground;
 pub fn spawn(world: &mut World, view: &ViewSpec, subject: &Subject, quality: Quality) {
     let (parts, size) = match quality {
         Quality::Fine => (9, 2048),
-        Quality::Fast => (1, 1024),
+        Quality::Fast => (1, 2048),
+        Quality::Software => (1, 1024),
     };
     world.insert_resource(DirectionalLightShadowMap { size });
     let far = 20.0 * subject.radius as f32;
@@ -104,7 +120,7 @@ pub fn lamp_ways((turn, elevation): (f64, f64), parts: usize) -> Vec<DVec3> {
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// What a camera in the studio needs beside its place.
-pub fn camera(world: &mut World, view: &ViewSpec) -> impl Bundle + use<> {
+pub fn camera(world: &mut World, view: &ViewSpec, quality: Quality) -> impl Bundle + use<> {
     let mut images = world.resource_mut::<Assets<Image>>();
     let grey = |v: f32| Color::linear_rgb(v, v, v);
     let mut sky = EnvironmentMapLight::hemispherical_gradient(
@@ -128,7 +144,15 @@ pub fn camera(world: &mut World, view: &ViewSpec) -> impl Bundle + use<> {
             ..default()
         },
         Tonemapping::None,
-        Msaa::Sample4,
+        match quality {
+            Quality::Fine | Quality::Fast => Msaa::Sample4,
+            Quality::Software => Msaa::Off,
+        },
+        match quality {
+            Quality::Fine => ShadowFilteringMethod::Hardware2x2,
+            Quality::Fast => ShadowFilteringMethod::Gaussian,
+            Quality::Software => ShadowFilteringMethod::Hardware2x2,
+        },
         sky,
     )
 }

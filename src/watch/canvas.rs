@@ -263,7 +263,7 @@ fn tell_place(painter: &egui::Painter, watch: &Watch, space: Rect, at: Pos2, cel
 /// The draped cloth.
 pub fn draped(ui: &mut Ui, space: Rect, watch: &mut Watch, view: &mut View3d, textures: Textures) {
     let response = ui.allocate_rect(space, Sense::click_and_drag());
-    let points = ui.ctx().pixels_per_point();
+    let points = ui.ctx().pixels_per_point() * view.share;
     let size = UVec2::new(
         (space.width() * points).round().max(16.0) as u32,
         (space.height() * points).round().max(16.0) as u32,

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use bevy::math::{DVec2, DVec3};
 
+use super::worker::on_own_cores;
 use crate::drape::hand::Hand;
 use crate::scenario::Scenario;
 use crate::studio::camera::Subject;
@@ -75,7 +76,7 @@ impl Hanger {
         let there = moment.clone();
         let thread = std::thread::Builder::new()
             .name("drape".into())
-            .spawn(move || run(&given, &there, &wake))?;
+            .spawn(move || on_own_cores(4, move || run(&given, &there, &wake)))?;
         Ok(Hanger {
             deeds,
             moment,

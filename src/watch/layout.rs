@@ -105,6 +105,7 @@ fn middle(root: &mut Ui, watch: &mut Watch, view: &mut View3d, textures: Texture
         .show(root, |ui| {
             problem(ui, watch);
             let space = ui.available_rect_before_wrap();
+            view.is_shown = watch.settings.layout != Layout::Flat;
             match watch.settings.layout {
                 Layout::Flat => canvas::flat(ui, space, watch, textures),
                 Layout::Draped => canvas::draped(ui, space, watch, view, textures),

@@ -308,11 +308,11 @@ fn take_seen(world: &mut World, watch: &mut Watch, seen: Seen) {
         return;
     }
     let front = &seen.sides[0];
-    let image = image_of_levels(front.levels.clone(), front.width, front.height, Kind::Colour);
+    let image = image_of_levels(front.levels.clone(), (front.width, front.height), Kind::Colour, 1);
     put(world, &watch.flat, image);
     if let Some(overlay) = &seen.overlay {
         let levels = overlay.rgba();
-        let mut image = image_of_levels(levels, overlay.nx, overlay.ny, Kind::Colour);
+        let mut image = image_of_levels(levels, (overlay.nx, overlay.ny), Kind::Colour, 1);
         image.texture_descriptor.mip_level_count = 1;
         put(world, &watch.over, image);
     }
@@ -377,7 +377,7 @@ fn take_moment(world: &mut World, watch: &mut Watch, moment: Moment) {
 
 /// A picture of one pixel, and its place among the textures of the panel.
 pub fn blank(world: &mut World) -> Handle<Image> {
-    let image = image_of_levels(vec![0; 4], 1, 1, Kind::Colour);
+    let image = image_of_levels(vec![0; 4], (1, 1), Kind::Colour, 1);
     let handle = world.resource_mut::<Assets<Image>>().add(image);
     world
         .resource_mut::<EguiUserTextures>()

@@ -17,7 +17,7 @@ use crate::studio::mips::Kind;
 use crate::studio::things::{self, Furniture, Thing};
 
 /// Frames that are drawn after a change: what was changed takes one to reach the renderer.
-const FRAMES: u32 = 3;
+const FRAMES: u32 = 2;
 
 /// The image that the studio is drawn into, and the camera that draws.
 #[derive(Resource)]
@@ -26,6 +26,8 @@ pub struct View3d {
     pub image: Handle<Image>,
     /// Its size, pixels.
     pub size: UVec2,
+    /// Pixels of it for one of the window, across and down; fewer where the processor draws.
+    pub share: f32,
     camera: Entity,
     /// Frames still to be drawn.
     dirty: u32,
@@ -37,6 +39,8 @@ pub struct View3d {
     pub field_of_view: f64,
     /// Whether someone has moved the camera.
     pub moved_by_hand: bool,
+    /// Whether it is shown.
+    pub is_shown: bool,
 }
 
 /// Where the camera stands: around what it looks at.
@@ -173,7 +177,8 @@ pub fn start(world: &mut World) {
     world
         .resource_mut::<EguiUserTextures>()
         .add_image(EguiTextureHandle::Strong(image.clone()));
-    let bundle = light::camera(world, &view);
+    let quality = Quality::for_window(world);
+    let bundle = light::camera(world, &view, quality);
     let camera = world
         .spawn((bundle, RenderTarget::from(image.clone())))
         .id();
@@ -183,6 +188,7 @@ pub fn start(world: &mut World) {
     world.insert_resource(View3d {
         image,
         size,
+        share: if quality == Quality::Software { 0.7 } else { 1.0 },
         camera,
         dirty: FRAMES,
         eye: Eye {
@@ -194,6 +200,7 @@ pub fn start(world: &mut World) {
         subject: None,
         field_of_view: view.field_of_view,
         moved_by_hand: false,
+        is_shown: true,
     });
 }
 
@@ -247,7 +254,8 @@ pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, furniture: 
         world.despawn(entity);
     }
     things::spawn(world, furniture);
-    light::spawn(world, view, &subject, Quality::Fast);
+    let quality = Quality::for_window(world);
+    light::spawn(world, view, &subject, quality);
     let colour = light::ground_colour(view);
     world.resource_scope(|world, mut view3d: Mut<View3d>| {
         if let Some(mut camera) = world.get_mut::<Camera>(view3d.camera) {
@@ -265,11 +273,12 @@ pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, furniture: 
 
 /// Shows the cloth in a shape, with what it looks like; hangs it first if it is not there.
 pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
+    let quality = Quality::for_window(world);
     let is_there = world.contains_resource::<ClothAssets>();
     match (is_there, front, seen) {
         (false, Some(front), Some(seen)) => {
-            let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour));
-            let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal));
+            let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour, quality));
+            let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal, quality));
             cloth::hang(world, cloth::shapes(front), images, reliefs);
             let handles = world.resource::<ClothAssets>().pictures.clone();
             let mut textures = world.resource_mut::<EguiUserTextures>();
@@ -282,7 +291,7 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
                 cloth::move_to(world, cloth::shapes(front));
             }
             if let Some(seen) = seen {
-                let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour));
+                let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour, quality));
                 cloth::repaint(world, images);
             }
         }
@@ -293,14 +302,20 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
 
 /// Gives the cloth another relief.
 pub fn relief(world: &mut World, seen: &Seen) {
+    let quality = Quality::for_window(world);
     if world.contains_resource::<ClothAssets>() {
-        let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal));
+        let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal, quality));
         cloth::emboss(world, reliefs);
     }
 }
 
-fn image(shown: &Shown, kind: Kind) -> Image {
-    cloth::image_of_levels(shown.levels.clone(), shown.width, shown.height, kind)
+fn image(shown: &Shown, kind: Kind, quality: Quality) -> Image {
+    let size = (shown.width, shown.height);
+    let anisotropy = match quality {
+        Quality::Fine | Quality::Fast => cloth::FINE,
+        Quality::Software => 1,
+    };
+    cloth::image_of_levels(shown.levels.clone(), size, kind, anisotropy)
 }
 
 /// Moves the camera, fits its image to the space there is, and draws only if something has changed.
@@ -321,10 +336,12 @@ pub fn draw(
         view.dirty = view.dirty.max(2);
     }
     if let Ok((mut camera, mut transform)) = cameras.get_mut(view.camera) {
-        camera.set_if_neq_active(view.dirty > 0);
+        camera.set_if_neq_active(view.is_shown && view.dirty > 0);
         transform.set_if_neq(view.eye.transform());
     }
-    view.dirty = view.dirty.saturating_sub(1);
+    if view.is_shown {
+        view.dirty = view.dirty.saturating_sub(1);
+    }
 }
 
 /// Turning a camera on and off without marking it as changed where it has not.

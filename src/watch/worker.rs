@@ -169,7 +169,9 @@ impl Worker {
         let thread = std::thread::Builder::new()
             .name("process".into())
             .spawn(move || {
-                Process::open(experiment, budget, 1, None).run(&given, &there, &wake);
+                on_own_cores(2, move || {
+                    Process::open(experiment, budget, 1, None).run(&given, &there, &wake);
+                });
             })?;
         Ok(Worker {
             orders,
@@ -206,6 +208,18 @@ impl Drop for Worker {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
+    }
+}
+
+/// Does work on threads of its own: one of `share` parts of the machine's. Threads that draw, and those
+/// of other work, would otherwise keep it waiting wherever its own meet; what it comes to is the same.
+pub(super) fn on_own_cores(share: usize, work: impl FnOnce() + Send) {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = (cores / share).max(1);
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(work),
+        // Then on everyone's.
+        Err(_) => work(),
     }
 }
 
