@@ -214,7 +214,7 @@ impl<'s> Pass<'s> {
         self.of = String::new();
         self.heading = None;
         self.effect = Effect::Anew;
-        let open = matches!(title, "Cloth" | "Dye");
+        let open = title == "Dye";
         self.folded(ui, title, title, open, true, add);
     }
 

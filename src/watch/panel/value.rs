@@ -34,7 +34,7 @@ impl Pass<'_> {
         let mut now = pulled.unwrap_or(value);
         let speed = (0.01 * value.abs()).max(0.01 * row.scale);
         let speed = if whole { speed.max(0.1) } else { speed };
-        let slide = width > 100.0 && least == 0.0 && most == 1.0 && !whole;
+        let slide = width > 100.0 && (0.0..0.01).contains(&least) && most == 1.0 && !whole;
         // What is written is not all there is: leaving the row must not round it.
         let get_set = |new: Option<f64>| {
             if let Some(new) = new {
@@ -46,7 +46,7 @@ impl Pass<'_> {
             now
         };
         if slide {
-            ui.spacing_mut().slider_width = width - 58.0;
+            ui.spacing_mut().slider_width = width - 54.0;
             ui.spacing_mut().interact_size.x = 50.0;
             let slider = egui::Slider::from_get_set(least..=most, get_set)
                 .clamping(egui::SliderClamping::Edits)
