@@ -68,7 +68,9 @@ impl Pass<'_> {
         out: bool,
     ) -> Option<Done> {
         let mut done = None;
-        let room = Rect::from_min_max(pos2(title.right() - 3.0 * 24.0, title.top()), title.max);
+        let right = ui.max_rect().right();
+        let corner = pos2(right - 3.0 * HEIGHT - 2.0 * 4.0, title.top());
+        let room = Rect::from_min_max(corner, pos2(right, title.bottom()));
         let layout = Layout::left_to_right(Align::Center);
         let builder = UiBuilder::new()
             .id_salt("moves")

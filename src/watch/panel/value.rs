@@ -49,6 +49,7 @@ impl Pass<'_> {
             }
             now
         };
+        let range = format!("{} to {}{}", written(least), written(most), row.unit);
         if slide {
             ui.spacing_mut().slider_width = width - 54.0;
             ui.spacing_mut().interact_size.x = 50.0;
@@ -56,7 +57,7 @@ impl Pass<'_> {
                 .clamping(egui::SliderClamping::Edits)
                 .update_while_editing(false)
                 .custom_formatter(|value, _| written(units::rounded(value, 4)));
-            ui.add(slider);
+            ui.add(slider).on_hover_text(range);
         } else {
             let number = egui::DragValue::from_get_set(get_set)
                 .speed(speed)
@@ -65,7 +66,6 @@ impl Pass<'_> {
                 .update_while_editing(false)
                 .suffix(row.unit)
                 .custom_formatter(|value, _| written(value));
-            let range = format!("{} to {}{}", written(least), written(most), row.unit);
             ui.add_sized([width, HEIGHT], number).on_hover_text(range);
         }
         let now = if whole { now.round() } else { now };
