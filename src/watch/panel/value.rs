@@ -8,9 +8,15 @@ use super::row::{HEIGHT, Kind, Pass, Pull, Row, VALUE};
 use crate::scenario::units;
 use crate::texture::to_rgb;
 
-/// A number as the panel writes it: six digits at most.
-fn written(value: f64) -> String {
-    let value = units::rounded(value, 6);
+/// All digits of a whole number.
+const WHOLE: usize = usize::MAX;
+
+/// A number as the panel writes it: so many digits at most, or all of a whole number.
+fn written(value: f64, digits: usize) -> String {
+    if digits == WHOLE {
+        return format!("{value:.0}");
+    }
+    let value = units::rounded(value, digits);
     match value.abs() {
         0.0 => "0".into(),
         size if !(1e-4..1e7).contains(&size) => format!("{value:e}"),
@@ -39,24 +45,34 @@ impl Pass<'_> {
             && (0.0..0.01).contains(&least)
             && most == 1.0
             && !whole;
+        let digits = match (whole, slide) {
+            (true, _) => WHOLE,
+            (_, true) => 4,
+            _ => 6,
+        };
         // What is written is not all there is: leaving the row must not round it.
         let get_set = |new: Option<f64>| {
             if let Some(new) = new {
                 let new = if whole { new.round() } else { new };
-                if written(new) != written(now) {
+                if written(new, digits) != written(now, digits) {
                     now = new;
                 }
             }
             now
         };
-        let range = format!("{} to {}{}", written(least), written(most), row.unit);
+        let range = format!(
+            "{} to {}{}",
+            written(least, digits),
+            written(most, digits),
+            row.unit
+        );
         if slide {
             ui.spacing_mut().slider_width = width - 54.0;
             ui.spacing_mut().interact_size.x = 50.0;
             let slider = egui::Slider::from_get_set(least..=most, get_set)
                 .clamping(egui::SliderClamping::Edits)
                 .update_while_editing(false)
-                .custom_formatter(|value, _| written(units::rounded(value, 4)));
+                .custom_formatter(|value, _| written(value, digits));
             ui.add(slider).on_hover_text(range);
         } else {
             let number = egui::DragValue::from_get_set(get_set)
@@ -65,7 +81,7 @@ impl Pass<'_> {
                 .clamp_existing_to_range(false)
                 .update_while_editing(false)
                 .suffix(row.unit)
-                .custom_formatter(|value, _| written(value));
+                .custom_formatter(|value, _| written(value, digits));
             ui.add_sized([width, HEIGHT], number).on_hover_text(range);
         }
         let now = if whole { now.round() } else { now };
