@@ -3,7 +3,7 @@
 //! always be dyed.
 
 use bevy_egui::egui::{
-    Context, Event, FontId, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2, vec2,
+    Context, Event, FontId, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2, vec2,
 };
 use dyelapse::cloth::Weave;
 use dyelapse::pattern::Pattern;
@@ -356,6 +356,31 @@ fn the_strangest_scenarios_that_can_be_are_shown_and_changed() {
             }
         }
     }
+}
+
+#[test]
+fn a_number_that_is_typed_is_taken_to_its_last_digit() {
+    let mut before = scenario("seikaiha");
+    before.seed = 123_456_789;
+    let enter = |pressed| Event::Key {
+        key: Key::Enter,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::default(),
+    };
+    let seeds = (24..120).step_by(6).map(|y| {
+        let mut now = before.clone();
+        let mut shown = Shown::new(false);
+        shown.state.search("seed");
+        shown.click(&mut now, pos2(220.0, y as f32));
+        shown.pass(&mut now, vec![Event::Text("123456790".into())]);
+        shown.pass(&mut now, vec![enter(true), enter(false)]);
+        shown.pass(&mut now, Vec::new());
+        now.seed
+    });
+    let seeds: Vec<u64> = seeds.collect();
+    assert!(seeds.contains(&123_456_790), "{seeds:?}");
 }
 
 #[test]

@@ -69,7 +69,7 @@ impl Pass<'_> {
     ) -> Option<Done> {
         let mut done = None;
         let right = ui.max_rect().right();
-        let corner = pos2(right - 3.0 * HEIGHT - 2.0 * 4.0, title.top());
+        let corner = pos2(right - 3.0 * HEIGHT - 3.0 * 4.0, title.top());
         let room = Rect::from_min_max(corner, pos2(right, title.bottom()));
         let layout = Layout::left_to_right(Align::Center);
         let builder = UiBuilder::new()
@@ -100,7 +100,11 @@ impl Pass<'_> {
             add(self, ui);
             return;
         }
-        ui.spacing_mut().indent = 8.0;
-        ui.indent("parts", |ui| add(self, ui));
+        let indent = std::mem::replace(&mut ui.spacing_mut().indent, 8.0);
+        ui.indent("parts", |ui| {
+            ui.spacing_mut().indent = indent;
+            add(self, ui);
+        });
+        ui.spacing_mut().indent = indent;
     }
 }
