@@ -30,8 +30,12 @@ pub struct Timeline {
     spacing: u64,
 }
 
-/// The least effort between two kept moments, as long as there is room.
-const CLOSEST: u64 = 8;
+/// The least effort between two kept moments, as long as there is room. To keep one takes as long as some
+/// ten evaluations of the rate; so it costs little beside what it may save.
+const CLOSEST: u64 = 64;
+
+/// The least effort between two that are the last one at rest.
+const LAST: u64 = 16;
 
 impl Timeline {
     /// A timeline that keeps at most so many bytes.
@@ -106,7 +110,10 @@ impl Timeline {
             self.kept.insert(at, Snapshot::take(world));
             self.last = None;
         } else if leaps {
-            self.last = Some(Snapshot::take(world));
+            let last = self.last.as_ref().map(Snapshot::effort);
+            if [last, before].into_iter().flatten().all(|old| old.abs_diff(now) >= LAST) {
+                self.last = Some(Snapshot::take(world));
+            }
         }
         self.thin_out();
     }

@@ -80,17 +80,28 @@ fn side(root: &mut Ui, watch: &mut Watch) {
     egui::Panel::left("parameters")
         .resizable(true)
         .default_size(312.0)
-        .size_range(280.0..=520.0)
+        .size_range(290.0..=520.0)
         .show(root, |ui| {
-            egui::ScrollArea::vertical()
-                .auto_shrink([false, false])
-                .show(ui, |ui| {
-                    let change = panel::parameters(ui, &mut watch.edit, &mut watch.panel);
-                    if let Some(change) = change {
-                        watch.send_edit(&change.label, change.held);
-                    }
-                });
+            ui.add_space(2.0);
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut watch.weaves, false, "Parameters");
+                ui.selectable_value(&mut watch.weaves, true, "Weave editor")
+                    .on_hover_text("Click the crossings, choose a weave, load a draft");
+            });
+            ui.separator();
+            let change = match watch.weaves {
+                true => panel::weave(ui, &mut watch.edit, &mut watch.panel),
+                false => panel::parameters(ui, &mut watch.edit, &mut watch.panel),
+            };
+            if let Some(change) = change {
+                watch.held = change.held;
+                watch.send_edit(&change.label, change.held);
+            }
         });
+    if watch.held && !root.ctx().input(|input| input.pointer.any_down()) {
+        watch.held = false;
+        watch.worker.order(super::worker::Order::Release);
+    }
     if let Some(ask) = watch.panel.take_ask() {
         let name = watch.name.clone();
         watch.files.ask(super::files::Wanted::Panel(ask), &name);

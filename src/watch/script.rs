@@ -106,6 +106,8 @@ pub struct Script {
     log: Option<std::fs::File>,
     began: Option<Instant>,
     frames: Frames,
+    /// The step that was gone to last.
+    going: Option<u64>,
     wants_picture: bool,
     waits_for_picture: std::sync::Arc<std::sync::atomic::AtomicBool>,
 }
@@ -208,7 +210,9 @@ fn state(watch: &mut Watch, act: &Act) -> String {
 /// Does an act, or sees whether it is done; true once it is.
 fn is_done(world: &mut World, watch: &mut Watch, act: &Act, elapsed: Duration) -> bool {
     let arrived = |watch: &Watch| {
-        watch.is_in_step() && watch.seen.as_ref().is_some_and(|seen| seen.step == seen.target)
+        let there = |step: u64| watch.script.going.is_none_or(|going| going == step);
+        let seen = watch.seen.as_ref();
+        watch.is_in_step() && seen.is_some_and(|seen| seen.step == seen.target && there(seen.step))
     };
     match act {
         Act::Wait(seconds) => return elapsed.as_secs_f64() >= *seconds,
@@ -221,16 +225,16 @@ fn is_done(world: &mut World, watch: &mut Watch, act: &Act, elapsed: Duration) -
         Act::Recorded => return watch.recording.is_none(),
         Act::Screenshot(path) => return screenshot(world, watch, path, elapsed),
         // What follows is done at once.
-        Act::Play => watch.worker.order(Order::Play(true)),
+        Act::Play => {
+            watch.script.going = None;
+            watch.worker.order(Order::Play(true));
+        }
         Act::Pause => watch.worker.order(Order::Play(false)),
         Act::PerSecond(steps) => watch.set_pace(Pace::PerSecond(*steps)),
         Act::PerFrame(steps) => watch.set_pace(Pace::PerFrame(*steps)),
         Act::GoTo(step) => {
             watch.worker.order(Order::GoTo(*step));
-            // It is on its way from now on.
-            if let Some(seen) = &mut watch.seen {
-                seen.target = *step;
-            }
+            watch.script.going = Some((*step).min(watch.edit.process.steps()));
         }
         Act::Open(name) => watch.open(name),
         Act::Edit(file) => match Experiment::load(file) {

@@ -53,6 +53,10 @@ pub struct Watch {
     pub panel: PanelState,
     /// Tools and how the flat cloth is seen.
     pub tools: Tools,
+    /// Whether the panel shows the weave editor.
+    pub weaves: bool,
+    /// Whether a slider of the panel is held.
+    pub held: bool,
     /// The recording that is being made.
     pub recording: Option<Running>,
     /// How the last one ended.
@@ -130,6 +134,8 @@ impl Watch {
             message: None,
             panel: PanelState::default(),
             tools: Tools::default(),
+            weaves: false,
+            held: false,
             recording: None,
             recorded: None,
             files: Files::default(),

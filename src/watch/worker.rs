@@ -229,8 +229,9 @@ const SLICE: Duration = Duration::from_millis(30);
 /// The longest that a frame may count for when the process plays at steps a second.
 const LONGEST_FRAME: f64 = 0.1;
 
-/// How often what is on its way to a step far away is shown.
-const GLIMPSE: Duration = Duration::from_millis(120);
+/// How often what is on its way to a step far away is shown, at most; where showing takes long, it takes no
+/// more than a fifth of the time.
+const GLIMPSE: Duration = Duration::from_millis(150);
 
 struct Process {
     app: App,
@@ -249,6 +250,8 @@ struct Process {
     last: Instant,
     /// When something on the way was shown last.
     glimpse: Instant,
+    /// How long it took to show it.
+    showing: Duration,
     speed: f64,
     /// Steps that are due but not whole yet.
     due: f64,
@@ -279,6 +282,7 @@ impl Process {
             problem: None,
             last: Instant::now(),
             glimpse: Instant::now(),
+            showing: Duration::ZERO,
             speed: 0.0,
             due: 0.0,
         };
@@ -424,9 +428,12 @@ impl Process {
         let world = self.app.world_mut();
         let began = Instant::now();
         let mut waiting = Vec::new();
+        let mut runs = 0;
         let mut go_on = |_: u64| {
             waiting.extend(orders.try_recv());
-            waiting.is_empty() && began.elapsed() < SLICE
+            runs += 1;
+            // One run at least, however long it took to get ready: else it would never arrive.
+            waiting.is_empty() && (runs == 1 || began.elapsed() < SLICE)
         };
         let before = world.resource::<ProcessClock>().step;
         let mut glimpsed = false;
@@ -449,9 +456,8 @@ impl Process {
         } else {
             let arrived = self.session.go_on(world, &mut go_on);
             // Far away: what lies on the way is a film too.
-            if !arrived && self.glimpse.elapsed() > GLIMPSE {
+            if !arrived && self.glimpse.elapsed() > GLIMPSE.max(4 * self.showing) {
                 self.session.show(world);
-                self.glimpse = Instant::now();
                 glimpsed = true;
             }
             arrived
@@ -472,7 +478,11 @@ impl Process {
     /// Gives the window what there is to be seen; waits until it has taken what was there before, or
     /// there are orders. False if it is time to end.
     fn publish(&mut self, orders: &Receiver<Order>, meeting: &Meeting, wake: &dyn Fn()) -> bool {
+        let began = Instant::now();
         let seen = self.seen();
+        self.glimpse = Instant::now();
+        // Drawing took about as long as getting it ready for the renderer.
+        self.showing = 2 * began.elapsed();
         let Ok(mut slot) = meeting.seen.lock() else {
             return false;
         };

@@ -2,11 +2,12 @@
 
 use bevy_egui::egui::Ui;
 
-use super::mend::{LONGEST_SIDE, cell_range};
+use super::lengths::LONGEST_SIDE;
+use super::mend::cell_range;
 use super::pattern;
 use super::presets;
 use super::row::{Effect, Pass, row};
-use super::weave;
+use super::weave_rows;
 use crate::pattern::Pattern;
 use crate::scenario::{KasuriSpec, Length, Scenario, YarnSpec};
 
@@ -24,7 +25,7 @@ pub(super) fn show(p: &mut Pass, ui: &mut Ui, scenario: &mut Scenario) {
         let cell = row("cell Δd", "Side of one cell of the computation. Smaller cells show finer yarns and take longer.").unit(" mm").scale(0.05);
         p.number(ui, &cell, &mut scenario.cloth.cell_mm, least..=most.max(least));
         p.heading("weave");
-        weave::rows(p, ui, &mut scenario.cloth);
+        weave_rows::rows(p, ui, &mut scenario.cloth);
         yarns(p, ui, scenario);
         gaps_and_paths(p, ui, scenario);
         kasuri(p, ui, scenario);

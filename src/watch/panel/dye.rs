@@ -2,6 +2,7 @@
 
 use bevy_egui::egui::Ui;
 
+use super::kinds;
 use super::mend::most_diffusivity;
 use super::pattern;
 use super::presets;
@@ -96,7 +97,7 @@ fn supplies(p: &mut Pass, ui: &mut Ui, scenario: &mut Scenario) {
             SupplySpec::Hold { .. } => "held",
             SupplySpec::Bath { .. } => "bath",
         };
-        format!("{kind}, {}", pattern::word(supply.shape()))
+        format!("{kind}, {}", kinds::word(supply.shape()))
     };
     let cells = p.cells;
     let make = |kind: usize| Some(of_kind(kind, stripe(cells), 1.0, Time::Steps(0)));

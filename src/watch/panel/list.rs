@@ -1,6 +1,6 @@
 //! Lists: what is added, taken out, and moved up and down.
 
-use bevy_egui::egui::{self, Ui};
+use bevy_egui::egui::{self, Align, Layout, Rect, Ui, UiBuilder, pos2, vec2};
 
 use super::row::{HEIGHT, Kind, Pass, Row, VALUE};
 
@@ -30,13 +30,13 @@ impl Pass<'_> {
         for (i, item) in items.iter_mut().enumerate() {
             let title = format!("{}. {}", i + 1, title(item));
             ui.push_id((row.name, i), |ui| {
-                self.fold(ui, &title, |p, ui| {
-                    let moved = p.moves(ui, row, i, count, count > least);
-                    if let Some(moved) = moved {
-                        done = Some((i, moved));
-                    }
+                let title = self.fold(ui, &title, |p, ui| {
                     p.indented(ui, |p, ui| show(p, ui, i, item));
                 });
+                let moved = title.and_then(|at| self.moves(ui, row, at, (i, count), count > least));
+                if let Some(moved) = moved {
+                    done = Some((i, moved));
+                }
             });
         }
         match done {
@@ -58,29 +58,39 @@ impl Pass<'_> {
         }
     }
 
-    /// The buttons that move an element and take it out.
-    fn moves(&mut self, ui: &mut Ui, row: &Row, i: usize, count: usize, out: bool) -> Option<Done> {
-        if self.searching() {
-            return None;
-        }
+    /// The buttons that move an element and take it out, at the right of its title.
+    fn moves(
+        &mut self,
+        ui: &mut Ui,
+        row: &Row,
+        title: Rect,
+        (i, count): (usize, usize),
+        out: bool,
+    ) -> Option<Done> {
         let mut done = None;
-        ui.horizontal(|ui| {
-            let room = ui.available_width() - 3.0 * 24.0;
-            ui.add_space(room.max(0.0));
-            for (text, tip, is_on, what) in [
-                ("⬆", "Move up", i > 0, Done::Up),
-                ("⬇", "Move down", i + 1 < count, Done::Down),
-                ("×", "Take out", out, Done::Out),
-            ] {
-                let button = egui::Button::new(text).min_size(egui::vec2(HEIGHT, HEIGHT));
-                let clicked = ui.add_enabled(is_on, button).on_hover_text(tip).clicked();
-                let pulled = is_on && self.control(tip, Kind::Button).is_some();
-                if clicked || pulled {
-                    done = Some(what);
-                    self.change(row.name);
-                }
+        let right = ui.max_rect().right();
+        let corner = pos2(right - 3.0 * HEIGHT - 3.0 * 4.0, title.top());
+        let room = Rect::from_min_max(corner, pos2(right, title.bottom()));
+        let layout = Layout::left_to_right(Align::Center);
+        let builder = UiBuilder::new()
+            .id_salt("moves")
+            .max_rect(room)
+            .layout(layout);
+        // Over the title, which takes up the whole row.
+        let mut over = ui.new_child(builder);
+        for (text, tip, is_on, what) in [
+            ("⬆", "Move up", i > 0, Done::Up),
+            ("⬇", "Move down", i + 1 < count, Done::Down),
+            ("×", "Take out", out, Done::Out),
+        ] {
+            let button = egui::Button::new(text).min_size(vec2(HEIGHT, HEIGHT));
+            let button = over.add_enabled(is_on, button).on_hover_text(tip);
+            let pulled = is_on && self.control(tip, Kind::Button).is_some();
+            if button.clicked() || pulled {
+                done = Some(what);
+                self.change(row.name);
             }
-        });
+        }
         done
     }
 
@@ -90,7 +100,11 @@ impl Pass<'_> {
             add(self, ui);
             return;
         }
-        ui.spacing_mut().indent = 8.0;
-        ui.indent("parts", |ui| add(self, ui));
+        let indent = std::mem::replace(&mut ui.spacing_mut().indent, 8.0);
+        ui.indent("parts", |ui| {
+            ui.spacing_mut().indent = indent;
+            add(self, ui);
+        });
+        ui.spacing_mut().indent = indent;
     }
 }

@@ -7,19 +7,30 @@
 mod batik;
 mod cloth;
 mod drape;
+mod drawdown;
 mod dye;
+mod kinds;
+mod lengths;
 mod list;
 mod look;
 pub mod mend;
 mod named;
+mod pass;
 mod pattern;
 mod presets;
 mod process;
 mod resist;
 mod row;
 mod scene;
+mod shapes;
+mod texture;
+mod things;
+mod unit;
 mod value;
+mod view;
+mod wax;
 mod weave;
+mod weave_rows;
 
 use std::collections::BTreeSet;
 

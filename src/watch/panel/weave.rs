@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use bevy_egui::egui::{self, Color32, EventFilter, Key, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+use bevy_egui::egui::{self, EventFilter, Key, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
-use super::PanelAsk;
-use super::named::NAMED;
+use super::drawdown::{draw, preview};
 use super::row::{HEIGHT, Kind, Pass, row};
-use crate::cloth::{Face, LARGEST_REPEAT, Measures, Weave, WeaveMatrix};
+use super::weave_rows::{kinds, load, parameters};
+use crate::cloth::{Weave, WeaveMatrix};
 use crate::draft::{self, Draft, Floats, floats};
-use crate::scenario::{ClothSpec, Scenario};
+use crate::scenario::Scenario;
 
 /// The largest repeat that is edited here, in ends and in picks.
 const LARGEST_EDITED: usize = 256;
@@ -70,173 +70,8 @@ impl WeaveState {
     }
 }
 
-/// The kinds of weave with their parameters.
-pub(super) fn rows(p: &mut Pass, ui: &mut Ui, cloth: &mut ClothSpec) {
-    kinds(p, ui, cloth);
-    parameters(p, ui, &mut cloth.weave);
-}
-
-fn kinds(p: &mut Pass, ui: &mut Ui, cloth: &mut ClothSpec) {
-    let named = row(
-        "named weave",
-        "Sets the weave to one that weavers have a name for.",
-    );
-    let names: Vec<&str> = NAMED.iter().map(|named| named.name).collect();
-    if let Some(i) = p.variant(ui, &named, usize::MAX, &names) {
-        cloth.weave = NAMED[i].weave();
-    }
-    let kind = row(
-        "weave",
-        "Which yarn lies on top at every crossing: by a rule, drawn by hand, from a weaver's draft (WIF), \
-         or read off a photograph.",
-    );
-    let now = match cloth.weave {
-        Weave::Plain => 0,
-        Weave::Twill { .. } => 1,
-        Weave::Satin { .. } => 2,
-        Weave::Matrix(_) => 3,
-        Weave::Wif { .. } => 4,
-        Weave::Mask { .. } => 5,
-    };
-    let kinds = [
-        "plain",
-        "twill",
-        "satin",
-        "by hand",
-        "draft (WIF)",
-        "from a mask",
-    ];
-    match p.variant(ui, &kind, now, &kinds) {
-        Some(0) => cloth.weave = Weave::Plain,
-        Some(1) => cloth.weave = Weave::Twill { over: 2, under: 2 },
-        Some(2) => {
-            cloth.weave = Weave::Satin {
-                shafts: 8,
-                counter: 3,
-                face: Face::Warp,
-            };
-        }
-        Some(3) => cloth.weave = by_hand(&cloth.weave.matrix()),
-        Some(4) => {
-            let file = draft::bundled_names().first().copied().unwrap_or_default();
-            cloth.weave = Weave::Wif {
-                file: file.to_owned(),
-                measures: Measures::Yarns,
-            };
-        }
-        Some(_) => p.ask_image("cloth.weave.file".into()),
-        None => {}
-    }
-}
-
-fn parameters(p: &mut Pass, ui: &mut Ui, weave: &mut Weave) {
-    match weave {
-        Weave::Twill { over, under } => {
-            let half = LARGEST_REPEAT / 2;
-            p.number(
-                ui,
-                &row(
-                    "over",
-                    "Picks that the warp floats over: more shows more warp.",
-                ),
-                over,
-                1..=half,
-            );
-            p.number(
-                ui,
-                &row("under", "Picks that the warp dives under."),
-                under,
-                1..=half,
-            );
-        }
-        Weave::Satin {
-            shafts,
-            counter,
-            face,
-        } => satin(p, ui, shafts, counter, face),
-        Weave::Wif { file, measures } => {
-            let names = draft::bundled_names();
-            let now = names
-                .iter()
-                .position(|name| name == file)
-                .unwrap_or(usize::MAX);
-            if let Some(i) = p.variant(
-                ui,
-                &row("bundled draft", "A draft that comes with the program."),
-                now,
-                &names,
-            ) {
-                *file = names[i].to_owned();
-            }
-            p.text(
-                ui,
-                &row(
-                    "draft file",
-                    "A WIF file beside the scenario, or the name of a bundled draft.",
-                ),
-                file,
-            );
-            let both = [
-                ("the draft's", Measures::Draft),
-                ("the yarns'", Measures::Yarns),
-            ];
-            p.choice(
-                ui,
-                &row(
-                    "measures",
-                    "Whether yarns are as wide as the draft says, or as the rows below.",
-                ),
-                measures,
-                &both,
-            );
-        }
-        Weave::Mask { file } => {
-            p.text(ui, &row("mask file", "A picture as large as the cloth: blue where the warp is on top, red where the weft is."), file);
-        }
-        Weave::Plain | Weave::Matrix(_) => {}
-    }
-}
-
-fn satin(p: &mut Pass, ui: &mut Ui, shafts: &mut u32, counter: &mut u32, face: &mut Face) {
-    let fits =
-        |shafts: u32, s: u32| (2..=shafts.saturating_sub(2)).contains(&s) && gcd(shafts, s) == 1;
-    let nearest = |shafts: u32, from: u32| {
-        (2..shafts)
-            .filter(|s| fits(shafts, *s))
-            .min_by_key(|s| s.abs_diff(from))
-    };
-    let before = *shafts;
-    p.number(ui, &row("shafts", "Ends and picks in one repeat; 6 make no satin. More makes longer floats and smoother cloth."), shafts, 5..=LARGEST_REPEAT);
-    if *shafts == 6 {
-        *shafts = if before < 6 { 7 } else { 5 };
-    }
-    p.number(
-        ui,
-        &row(
-            "counter",
-            "The move from pick to pick; it shares no factor with the shafts.",
-        ),
-        counter,
-        2..=shafts.saturating_sub(2).max(2),
-    );
-    if !fits(*shafts, *counter) {
-        *counter = nearest(*shafts, *counter).unwrap_or(2);
-    }
-    let both = [("warp", Face::Warp), ("weft (sateen)", Face::Weft)];
-    p.choice(
-        ui,
-        &row("faced by", "Which yarn covers the face."),
-        face,
-        &both,
-    );
-}
-
-fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
-
 /// A weave drawn by hand from a matrix.
-fn by_hand(matrix: &WeaveMatrix) -> Weave {
+pub(super) fn by_hand(matrix: &WeaveMatrix) -> Weave {
     let (ends, picks) = (matrix.ends(), matrix.picks());
     drawn(ends, picks, |e, p| matrix.warp_up(e, p))
 }
@@ -270,8 +105,8 @@ pub(super) fn show(p: &mut Pass, ui: &mut Ui, scenario: &mut Scenario, state: &m
         }
     }
     ui.push_id("parameters", |ui| parameters(p, ui, weave));
-    if p.button(ui, "Load a WIF…", "Reads a weaver's draft") {
-        p.state.ask = Some(PanelAsk::OpenWif);
+    if !matches!(weave, Weave::Wif { .. }) {
+        load(p, ui);
     }
     let Some(matrix) = matrix else { return };
     preview(ui, &matrix);
@@ -353,10 +188,6 @@ fn moves(p: &mut Pass, ui: &mut Ui, weave: &mut Weave, matrix: &WeaveMatrix) {
     });
 }
 
-const WARP: Color32 = Color32::from_rgb(38, 60, 110);
-const WEFT: Color32 = Color32::from_rgb(236, 228, 208);
-const GROUND: Color32 = Color32::from_rgb(120, 112, 100);
-
 fn grid(
     p: &mut Pass,
     ui: &mut Ui,
@@ -397,12 +228,13 @@ fn grid(
     let pointed = response.interact_pointer_pos().and_then(at);
     let mut set = None;
     let moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO);
-    if response.is_pointer_button_down_on() && (moved || state.paints.is_none()) {
-        if let Some((e, p)) = pointed {
-            let paints = *state.paints.get_or_insert(!matrix.warp_up(e, p));
-            set = Some((e, p, paints));
-            state.cursor = (e, p);
-        }
+    if response.is_pointer_button_down_on()
+        && (moved || state.paints.is_none())
+        && let Some((e, p)) = pointed
+    {
+        let paints = *state.paints.get_or_insert(!matrix.warp_up(e, p));
+        set = Some((e, p, paints));
+        state.cursor = (e, p);
     }
     if !response.is_pointer_button_down_on() {
         state.paints = None;
@@ -457,51 +289,4 @@ fn keys(
     };
     let (e, p) = state.cursor;
     pressed(Key::Space).then(|| (e, p, !matrix.warp_up(e, p)))
-}
-
-/// The crossings within `clip`.
-fn draw(painter: &egui::Painter, rect: Rect, side: f32, matrix: &WeaveMatrix, clip: Rect) {
-    painter.rect_filled(rect, 0.0, GROUND);
-    let first = ((clip.min - rect.min) / side).max(vec2(0.0, 0.0));
-    let last = (clip.max - rect.min) / side;
-    for p in first.y as usize..matrix.picks().min(last.y.max(0.0) as usize + 1) {
-        for e in first.x as usize..matrix.ends().min(last.x.max(0.0) as usize + 1) {
-            let corner = rect.min + vec2(e as f32, p as f32) * side;
-            let cell = Rect::from_min_size(corner, vec2(side - 1.0, side - 1.0));
-            let colour = if matrix.warp_up(e, p) { WARP } else { WEFT };
-            painter.rect_filled(cell, 0.0, colour);
-        }
-    }
-}
-
-/// The cloth that the weave gives, with its floats.
-fn preview(ui: &mut Ui, matrix: &WeaveMatrix) {
-    ui.add_space(4.0);
-    let side = 8.0;
-    let across = ((ui.available_width() / side) as usize).clamp(8, 48);
-    let down = 20;
-    let size = vec2(side * across as f32, side * down as f32);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response.on_hover_text("The cloth from the face: warp dark, weft light. Long bars are floats.");
-    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
-    painter.rect_filled(rect, 0.0, GROUND);
-    for p in 0..down {
-        for e in 0..across {
-            let corner = rect.min + vec2(e as f32, p as f32) * side;
-            // A yarn on top reaches over the gap to the next crossing where it stays on top.
-            let up = matrix.warp_up(e, p);
-            let floats_on = match up {
-                true => matrix.warp_up(e, p + 1),
-                false => !matrix.warp_up(e + 1, p),
-            };
-            let long = if floats_on { side } else { side - 1.5 };
-            let thick = side - 2.0;
-            let (size, colour) = match up {
-                true => (vec2(thick, long), WARP),
-                false => (vec2(long, thick), WEFT),
-            };
-            let yarn = Rect::from_min_size(pos2(corner.x + 0.5, corner.y + 0.5), size);
-            painter.rect_filled(yarn, 0.0, colour);
-        }
-    }
 }
