@@ -111,7 +111,11 @@ impl Timeline {
             self.last = None;
         } else if leaps {
             let last = self.last.as_ref().map(Snapshot::effort);
-            if [last, before].into_iter().flatten().all(|old| old.abs_diff(now) >= LAST) {
+            if [last, before]
+                .into_iter()
+                .flatten()
+                .all(|old| old.abs_diff(now) >= LAST)
+            {
                 self.last = Some(Snapshot::take(world));
             }
         }

@@ -102,7 +102,8 @@ impl Eye {
         let out = self.out();
         let right = DVec3::Y.cross(out).normalize_or(DVec3::X);
         let up = out.cross(right);
-        let way = (2.0 * x - 1.0) * opening.across * right + (1.0 - 2.0 * y) * opening.up * up - out;
+        let way =
+            (2.0 * x - 1.0) * opening.across * right + (1.0 - 2.0 * y) * opening.up * up - out;
         (self.at + self.distance * out, way.normalize())
     }
 }
@@ -188,7 +189,11 @@ pub fn start(world: &mut World) {
     world.insert_resource(View3d {
         image,
         size,
-        share: if quality == Quality::Software { 0.7 } else { 1.0 },
+        share: if quality == Quality::Software {
+            0.7
+        } else {
+            1.0
+        },
         camera,
         dirty: FRAMES,
         eye: Eye {
@@ -246,10 +251,7 @@ impl View3d {
 /// Builds everything that the cloth lies on or hangs from, for another cloth.
 pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, furniture: &Furniture) {
     type Old = Or<(With<Thing>, With<Lamp>, With<Ground>)>;
-    let old: Vec<Entity> = world
-        .query_filtered::<Entity, Old>()
-        .iter(world)
-        .collect();
+    let old: Vec<Entity> = world.query_filtered::<Entity, Old>().iter(world).collect();
     for entity in old {
         world.despawn(entity);
     }
@@ -277,8 +279,14 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
     let is_there = world.contains_resource::<ClothAssets>();
     match (is_there, front, seen) {
         (false, Some(front), Some(seen)) => {
-            let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour, quality));
-            let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal, quality));
+            let images = seen
+                .sides
+                .each_ref()
+                .map(|side| image(side, Kind::Colour, quality));
+            let reliefs = seen
+                .reliefs
+                .each_ref()
+                .map(|side| image(side, Kind::Normal, quality));
             cloth::hang(world, cloth::shapes(front), images, reliefs);
             let handles = world.resource::<ClothAssets>().pictures.clone();
             let mut textures = world.resource_mut::<EguiUserTextures>();
@@ -291,7 +299,10 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
                 cloth::move_to(world, cloth::shapes(front));
             }
             if let Some(seen) = seen {
-                let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour, quality));
+                let images = seen
+                    .sides
+                    .each_ref()
+                    .map(|side| image(side, Kind::Colour, quality));
                 cloth::repaint(world, images);
             }
         }
@@ -304,7 +315,10 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
 pub fn relief(world: &mut World, seen: &Seen) {
     let quality = Quality::for_window(world);
     if world.contains_resource::<ClothAssets>() {
-        let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal, quality));
+        let reliefs = seen
+            .reliefs
+            .each_ref()
+            .map(|side| image(side, Kind::Normal, quality));
         cloth::emboss(world, reliefs);
     }
 }
