@@ -246,6 +246,8 @@ struct Process {
     cut: Option<Cut>,
     reliefs: [Arc<Shown>; 2],
     problem: Option<String>,
+    /// Whether it is time to end.
+    quits: bool,
     /// When and where the last frame of playing was.
     last: Instant,
     /// When something on the way was shown last.
@@ -283,6 +285,7 @@ impl Process {
             cut: before.and_then(|before| before.cut),
             reliefs: [nothing.clone(), nothing],
             problem: None,
+            quits: false,
             last: Instant::now(),
             glimpse: Instant::now(),
             showing: Duration::ZERO,
@@ -329,13 +332,13 @@ impl Process {
             };
             let mut changed = first.is_some();
             for order in first.into_iter().chain(orders.try_iter()) {
-                if matches!(order, Order::Quit) {
-                    return;
-                }
                 self.follow(order);
             }
-            if self.is_busy() {
+            if self.is_busy() && !self.quits {
                 changed |= self.advance(orders);
+            }
+            if self.quits {
+                return;
             }
             if changed && !self.publish(orders, meeting, wake) {
                 return;
@@ -407,7 +410,7 @@ impl Process {
             }
             Order::Overlay(overlay) => self.overlay = overlay,
             Order::Cut(cut) => self.cut = cut,
-            Order::Quit => {}
+            Order::Quit => self.quits = true,
         }
     }
 
@@ -501,10 +504,10 @@ impl Process {
                 drop(slot);
                 let waiting: Vec<_> = orders.try_iter().collect();
                 for order in waiting {
-                    if matches!(order, Order::Quit) {
-                        return false;
-                    }
                     self.follow(order);
+                }
+                if self.quits {
+                    return false;
                 }
                 let Ok(again) = meeting.seen.lock() else {
                     return false;
