@@ -29,7 +29,9 @@ const INTERRUPTED: u8 = 130;
 
 /// Does what was typed.
 pub fn run(cli: Cli) -> ExitCode {
-    let command = cli.command.unwrap_or_else(|| Command::Watch(Default::default()));
+    let command = cli
+        .command
+        .unwrap_or_else(|| Command::Watch(Default::default()));
     match command {
         Command::Watch(arguments) => watch::run(&arguments),
         Command::Record(arguments) => record::run(&arguments),

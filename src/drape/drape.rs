@@ -49,7 +49,7 @@ pub struct Settings {
     pub integrator: Integrator,
     /// The longest step, s.
     pub step: f64,
-    /// By how much conjugate gradients bring the residual down.
+    /// By how much conjugate gradients bring the residual down (of less than thrice the weight, of that).
     pub tolerance: f64,
     /// The most iterations of conjugate gradients in a step.
     pub iterations: usize,
@@ -97,6 +97,15 @@ pub struct Sheet {
     pub topology: Topology,
     /// How much cloth there is in every cell, m², a row of `particles.0 − 1` at a time.
     pub area: Vec<f64>,
+}
+
+impl Sheet {
+    /// The mass of the whole, kg.
+    pub(super) fn weighs(&self) -> f64 {
+        let (nx, ny) = self.links.particles;
+        let row = |y: usize| (0..nx).map(|x| self.mass.get(x, y, 0)).sum::<f64>();
+        (0..ny).map(row).sum()
+    }
 }
 
 /// Why a cloth cannot go on.

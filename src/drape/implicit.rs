@@ -19,7 +19,7 @@ use bevy::math::DVec3;
 use super::collide::distance::{Pair, combine};
 use super::contact::{Added, Contact, Rule, Touch, product};
 use super::drape::{Given, Integrator, Proposed, Sheet};
-use super::pcg::Work;
+use super::pcg::{Goal, Work};
 use super::response::{Ahead, Response};
 use super::rows::{Rows, each, each2};
 use super::system::System;
@@ -49,6 +49,10 @@ pub(super) struct Implicit {
 /// α of BDF2 as a share of backward Euler's: a particle whose past says nothing, as it was stopped by
 /// something, takes a step of backward Euler among others that take one of BDF2.
 const FRESH: f64 = 4.0 / 9.0;
+
+/// The tolerance is a share of the forces there are, but at least of so many times the weight: cloth almost
+/// at rest need not be solved for to a thousandth of next to nothing. What is left is there in the next step.
+const TIMES_WEIGHT: f64 = 3.0;
 
 /// α, β and whether the step is BDF2's.
 #[derive(Clone, Copy)]
@@ -148,10 +152,17 @@ impl Implicit {
         }
         let [last, before] = &self.guesses;
         self.solver.begin(&system, [last, before], &mut self.u);
-        let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);
+        let goal = Goal {
+            tolerance: given.settings.tolerance,
+            least: TIMES_WEIGHT
+                * given.settings.gravity.length()
+                * scheme.alpha
+                * sheet.weighs().sqrt(),
+            iterations: given.settings.iterations,
+        };
         let solved = self
             .solver
-            .solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
+            .solve(&system, &mut self.yarns, &mut self.u, goal);
         self.guesses.swap(0, 1);
         self.guesses[0].clone_from(&self.u);
         let nx = sheet.links.particles.0;

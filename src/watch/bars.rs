@@ -40,31 +40,64 @@ pub fn top(root: &mut Ui, watch: &mut Watch, view: &mut View3d) {
 }
 
 fn files(ui: &mut Ui, watch: &mut Watch) {
-    if button(ui, true, "Gallery", "The scenarios that come with the program (G)") {
+    if button(
+        ui,
+        true,
+        "Gallery",
+        "The scenarios that come with the program (G)",
+    ) {
         watch.open.gallery = true;
     }
     if button(ui, true, "Open…", "Open a scenario (Ctrl O)") {
         watch.files.ask(Wanted::Open, "");
     }
     let star = if watch.unsaved { "Save •" } else { "Save" };
-    if button(ui, true, star, "Save the scenario as RON, with comments (Ctrl S); Ctrl Shift S saves elsewhere") {
+    if button(
+        ui,
+        true,
+        star,
+        "Save the scenario as RON, with comments (Ctrl S); Ctrl Shift S saves elsewhere",
+    ) {
         watch.save();
     }
-    let [undo, redo] = watch.seen.as_ref().map_or([None, None], |seen| seen.undo.clone());
+    let [undo, redo] = watch
+        .seen
+        .as_ref()
+        .map_or([None, None], |seen| seen.undo.clone());
     let tip = |what: &str, label: &Option<String>| match label {
         Some(label) => format!("{what}: {label}"),
         None => format!("Nothing to {}", what.to_lowercase()),
     };
-    if button(ui, undo.is_some(), "⟲", &format!("{} (Ctrl Z)", tip("Undo", &undo))) {
+    if button(
+        ui,
+        undo.is_some(),
+        "⟲",
+        &format!("{} (Ctrl Z)", tip("Undo", &undo)),
+    ) {
         watch.order_edit(Order::Undo);
     }
-    if button(ui, redo.is_some(), "⟳", &format!("{} (Ctrl Y)", tip("Redo", &redo))) {
+    if button(
+        ui,
+        redo.is_some(),
+        "⟳",
+        &format!("{} (Ctrl Y)", tip("Redo", &redo)),
+    ) {
         watch.order_edit(Order::Redo);
     }
-    if button(ui, watch.recording.is_none(), "⏺ Record…", "Record the process from its beginning, as `dyelapse record` does (R)") {
+    if button(
+        ui,
+        watch.recording.is_none(),
+        "⏺ Record…",
+        "Record the process from its beginning, as `dyelapse record` does (R)",
+    ) {
         watch.open.record = true;
     }
-    if button(ui, true, "📷", "Keep a picture of the cloth as it is now (P)") {
+    if button(
+        ui,
+        true,
+        "📷",
+        "Keep a picture of the cloth as it is now (P)",
+    ) {
         watch.script.keep_picture();
     }
 }
@@ -77,7 +110,11 @@ fn views(ui: &mut Ui, watch: &mut Watch, view: &mut View3d) {
     ] {
         let chosen = watch.settings.layout == layout;
         let tip = format!("Show the cloth {} ({key})", name.to_lowercase());
-        if ui.selectable_label(chosen, name).on_hover_text(tip).clicked() {
+        if ui
+            .selectable_label(chosen, name)
+            .on_hover_text(tip)
+            .clicked()
+        {
             watch.settings.layout = layout;
             view.touch();
         }
@@ -92,7 +129,11 @@ fn tools(ui: &mut Ui, watch: &mut Watch) {
     for tool in Tool::ALL {
         let chosen = watch.tools.tool == tool;
         let tip = format!("{} ({})", tool.tip(), tool.key());
-        if ui.selectable_label(chosen, tool.name()).on_hover_text(tip).clicked() {
+        if ui
+            .selectable_label(chosen, tool.name())
+            .on_hover_text(tip)
+            .clicked()
+        {
             watch.tools.tool = tool;
         }
     }
@@ -101,11 +142,17 @@ fn tools(ui: &mut Ui, watch: &mut Watch) {
 /// What the tool in hand can be set to, and which field lies over the cloth.
 fn second_row(ui: &mut Ui, watch: &mut Watch) {
     let panel = ui.selectable_label(watch.settings.panel, "Parameters");
-    if panel.on_hover_text("Show or hide the parameters (Tab)").clicked() {
+    if panel
+        .on_hover_text("Show or hide the parameters (Tab)")
+        .clicked()
+    {
         watch.settings.panel = !watch.settings.panel;
     }
     let plots = ui.selectable_label(watch.settings.plots, "Plots");
-    if plots.on_hover_text("Show or hide ledger and cross-section (L)").clicked() {
+    if plots
+        .on_hover_text("Show or hide ledger and cross-section (L)")
+        .clicked()
+    {
         watch.settings.plots = !watch.settings.plots;
     }
     ui.separator();
@@ -146,10 +193,19 @@ fn brush(ui: &mut Ui, watch: &mut Watch) {
     let brush = &mut watch.tools.brush;
     for (kind, name, tip) in [
         (Kind::Dye, "dye", "Dye is given where and when you paint"),
-        (Kind::Resist, "resist", "Paste that keeps dye out; ↻ the process begins anew with it"),
-        (Kind::Wax, "wax", "Wax for batik, which cracks; without a batik it keeps all dye out; ↻ the process begins anew with it"),
+        (
+            Kind::Resist,
+            "resist",
+            "Paste that keeps dye out; ↻ the process begins anew with it",
+        ),
+        (
+            Kind::Wax,
+            "wax",
+            "Wax for batik, which cracks; without a batik it keeps all dye out; ↻ the process begins anew with it",
+        ),
     ] {
-        ui.selectable_value(&mut brush.kind, kind, name).on_hover_text(tip);
+        ui.selectable_value(&mut brush.kind, kind, name)
+            .on_hover_text(tip);
     }
     ui.add(
         egui::Slider::new(&mut brush.size, 0.002..=0.2)
@@ -169,15 +225,18 @@ pub fn bottom(root: &mut Ui, watch: &mut Watch) {
     egui::Panel::bottom("time").show(root, |ui| {
         ui.add_space(4.0);
         let total = watch.edit.process.steps();
-        let (step, hours, playing) = watch
-            .seen
-            .as_ref()
-            .map_or((0, 0.0, false), |seen| (seen.step, seen.hours, seen.playing));
+        let (step, hours, playing) = watch.seen.as_ref().map_or((0, 0.0, false), |seen| {
+            (seen.step, seen.hours, seen.playing)
+        });
         ui.horizontal(|ui| {
             if button(ui, true, "⏮", "To the beginning (Home)") {
                 watch.worker.order(Order::GoTo(0));
             }
-            let (sign, tip) = if playing { ("⏸", "Pause (Space)") } else { ("▶", "Play (Space)") };
+            let (sign, tip) = if playing {
+                ("⏸", "Pause (Space)")
+            } else {
+                ("▶", "Play (Space)")
+            };
             if button(ui, true, sign, tip) {
                 watch.worker.order(Order::Play(!playing));
             }
@@ -248,7 +307,11 @@ fn timeline(ui: &mut Ui, watch: &mut Watch, step: u64, total: u64) {
         let at = pos2(x_of(target), track.center().y);
         painter.circle_stroke(at, 6.0, Stroke::new(1.5, Color32::from_rgb(230, 180, 80)));
     }
-    painter.circle_filled(pos2(x_of(step), track.center().y), 6.0, visuals.strong_text_color());
+    painter.circle_filled(
+        pos2(x_of(step), track.center().y),
+        6.0,
+        visuals.strong_text_color(),
+    );
     let at = |x: f32| {
         let share = f64::from(((x - track.left()) / track.width()).clamp(0.0, 1.0));
         (share * total as f64).round() as u64
@@ -289,7 +352,11 @@ fn pace(ui: &mut Ui, watch: &mut Watch, total: u64) {
 /// What goes on: recording, computing, messages.
 fn status(ui: &mut Ui, watch: &mut Watch) {
     if let Some(recording) = &watch.recording {
-        if ui.button("Stop").on_hover_text("End the recording early; what is there is valid").clicked() {
+        if ui
+            .button("Stop")
+            .on_hover_text("End the recording early; what is there is valid")
+            .clicked()
+        {
             recording.stop();
         }
         ui.add(

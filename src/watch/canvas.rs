@@ -1,7 +1,9 @@
 //! The cloth itself in the window, flat and draped, and what the pointer does on it.
 
 use bevy::math::{DVec3, UVec2};
-use bevy_egui::egui::{self, Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
+use bevy_egui::egui::{
+    self, Color32, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
+};
 
 use super::hanger::{Deed, Place};
 use super::layout::Textures;
@@ -9,9 +11,9 @@ use super::state::Watch;
 use super::tools::{FlatView, Kind, Tool, wanted_scale};
 use super::view3d::{Hit, View3d, hit};
 use super::worker::Order;
+use crate::drape::spec::{CreaseSpec, Fold, Hold, PinSpec};
 use crate::scenario::Draping;
 use crate::scenario::check::Checker;
-use crate::drape::spec::{CreaseSpec, Fold, Hold, PinSpec};
 use crate::studio::hung::spec_of;
 
 const WHOLE: Rect = Rect {
@@ -55,7 +57,10 @@ pub fn flat(ui: &mut Ui, space: Rect, watch: &mut Watch, textures: Textures) {
     }
     let mm = f64::from(1.0 / zoom) * 100.0 * watch.edit.cloth.cell_mm;
     ruler(&painter, space, mm);
-    if let Some(at) = response.hover_pos().filter(|_| watch.tools.tool != Tool::Brush) {
+    if let Some(at) = response
+        .hover_pos()
+        .filter(|_| watch.tools.tool != Tool::Brush)
+    {
         tell_place(&painter, watch, space, at, cells);
     }
 }
@@ -75,7 +80,10 @@ fn zoomed_and_moved(
             view = view.zoomed(factor, at, space, cells);
         }
     }
-    let looks = matches!(watch.tools.tool, Tool::Look | Tool::Hand | Tool::Pin | Tool::Crease);
+    let looks = matches!(
+        watch.tools.tool,
+        Tool::Look | Tool::Hand | Tool::Pin | Tool::Crease
+    );
     let moves = response.dragged_by(PointerButton::Middle)
         || response.dragged_by(PointerButton::Secondary)
         || (looks && response.dragged_by(PointerButton::Primary));
@@ -203,7 +211,9 @@ fn legend(painter: &egui::Painter, space: Rect, overlay: &crate::session::overla
         painter.text(
             pos2(bar.right() + 6.0, y),
             egui::Align2::LEFT_CENTER,
-            format!("{:.3}", stop.value).trim_end_matches('0').trim_end_matches('.'),
+            format!("{:.3}", stop.value)
+                .trim_end_matches('0')
+                .trim_end_matches('.'),
             egui::FontId::proportional(11.0),
             Color32::WHITE,
         );
@@ -217,7 +227,10 @@ fn ruler(painter: &egui::Painter, space: Rect, mm: f64) {
         return;
     }
     let size = 10f64.powf(mm.log10().floor());
-    let length = [5.0, 2.0, 1.0].into_iter().map(|n| n * size).find(|l| *l <= mm);
+    let length = [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|n| n * size)
+        .find(|l| *l <= mm);
     let length = length.unwrap_or(size);
     let points = (100.0 * length / mm) as f32;
     let right = space.right_bottom() + vec2(-12.0, -12.0);
@@ -232,12 +245,30 @@ fn ruler(painter: &egui::Painter, space: Rect, mm: f64) {
     }
     let middle = left + 0.5 * (right - left) + vec2(0.0, -4.0);
     let font = egui::FontId::proportional(11.0);
-    painter.text(middle + vec2(1.0, 1.0), egui::Align2::CENTER_BOTTOM, &text, font.clone(), Color32::BLACK);
-    painter.text(middle, egui::Align2::CENTER_BOTTOM, text, font, Color32::WHITE);
+    painter.text(
+        middle + vec2(1.0, 1.0),
+        egui::Align2::CENTER_BOTTOM,
+        &text,
+        font.clone(),
+        Color32::BLACK,
+    );
+    painter.text(
+        middle,
+        egui::Align2::CENTER_BOTTOM,
+        text,
+        font,
+        Color32::WHITE,
+    );
 }
 
 /// Says which cell is under the pointer, and the value of the field there.
-fn tell_place(painter: &egui::Painter, watch: &Watch, space: Rect, at: Pos2, cells: (usize, usize)) {
+fn tell_place(
+    painter: &egui::Painter,
+    watch: &Watch,
+    space: Rect,
+    at: Pos2,
+    cells: (usize, usize),
+) {
     let (x, y) = watch.tools.flat.place(at, space, cells);
     if !(0.0..1.0).contains(&x) || !(0.0..1.0).contains(&y) {
         return;
@@ -294,7 +325,9 @@ pub fn draped(ui: &mut Ui, space: Rect, watch: &mut Watch, view: &mut View3d, te
     let pans = response.dragged_by(PointerButton::Middle) || (primary && shift);
     let turns = response.dragged_by(PointerButton::Secondary) || (primary && !shift);
     if pans && drag != egui::Vec2::ZERO {
-        view.eye = view.eye.shifted((drag.x, drag.y), space.height(), view.field_of_view);
+        view.eye = view
+            .eye
+            .shifted((drag.x, drag.y), space.height(), view.field_of_view);
         view.moved_by_hand = true;
     } else if turns && drag != egui::Vec2::ZERO {
         view.eye = view.eye.turned((drag.x, drag.y));
@@ -310,7 +343,10 @@ pub fn draped(ui: &mut Ui, space: Rect, watch: &mut Watch, view: &mut View3d, te
 /// The ray under a point.
 fn ray(view: &View3d, space: Rect, at: Pos2) -> (DVec3, DVec3) {
     let off = at - space.min;
-    let share = (f64::from(off.x / space.width()), f64::from(off.y / space.height()));
+    let share = (
+        f64::from(off.x / space.width()),
+        f64::from(off.y / space.height()),
+    );
     view.eye.ray(share, view.opening())
 }
 
@@ -345,7 +381,9 @@ fn use_draped(ui: &Ui, response: &Response, watch: &mut Watch, view: &View3d, sp
             }
         }
         Tool::Pin => {
-            if response.clicked() && let Some(hit) = hit_at(watch, view, space, at) {
+            if response.clicked()
+                && let Some(hit) = hit_at(watch, view, space, at)
+            {
                 pin(watch, hit);
             }
         }
@@ -354,7 +392,10 @@ fn use_draped(ui: &Ui, response: &Response, watch: &mut Watch, view: &View3d, sp
                 watch.tools.from = Some(hit.uv);
                 watch.tools.to = Some(hit.uv);
             }
-            if watch.tools.from.is_some() && dragged && let Some(hit) = hit_at(watch, view, space, at) {
+            if watch.tools.from.is_some()
+                && dragged
+                && let Some(hit) = hit_at(watch, view, space, at)
+            {
                 watch.tools.to = Some(hit.uv);
             }
             if response.drag_stopped()
@@ -378,7 +419,11 @@ fn rounded((x, y): Place) -> Place {
 }
 
 /// Changes the drape of the scenario in the way in which the hanging cloth was changed already.
-pub fn also_in_scenario(watch: &mut Watch, label: &str, change: impl FnOnce(&mut crate::drape::spec::DrapeSpec)) {
+pub fn also_in_scenario(
+    watch: &mut Watch,
+    label: &str,
+    change: impl FnOnce(&mut crate::drape::spec::DrapeSpec),
+) {
     let Ok(mut spec) = spec_of(&watch.edit, None) else {
         return;
     };
@@ -398,7 +443,11 @@ pub fn crease(watch: &mut Watch, from: Place, to: Place) {
     if (from.0 - to.0).hypot(from.1 - to.1) < 0.01 {
         return;
     }
-    let fold = if watch.tools.valley { Fold::Valley } else { Fold::Mountain };
+    let fold = if watch.tools.valley {
+        Fold::Valley
+    } else {
+        Fold::Mountain
+    };
     let angle = 110.0;
     let signed = if watch.tools.valley { -angle } else { angle };
     watch.hanger.act(Deed::Crease(from, to, signed));
@@ -418,27 +467,34 @@ pub fn pin(watch: &mut Watch, hit: Hit) {
     let place = rounded(hit.uv);
     let time = watch.moment.as_ref().map_or(0.0, |moment| moment.time);
     let near = |moment: &super::hanger::Moment| {
-        moment.pinned.iter().any(|pinned| pinned.distance(hit.place) < 0.015)
+        moment
+            .pinned
+            .iter()
+            .any(|pinned| pinned.distance(hit.place) < 0.015)
     };
     let takes_off = watch.moment.as_ref().is_some_and(near);
     watch.hanger.act(Deed::Pin(place));
-    also_in_scenario(watch, if takes_off { "take a pin off" } else { "pin" }, |spec| {
-        let close = |pin: &PinSpec| match pin.at {
-            Hold::Point(u, v) => (u - place.0).hypot(v - place.1) < 0.02,
-            _ => false,
-        };
-        if takes_off {
-            spec.pins.retain(|pin| !close(pin));
-        } else {
-            spec.pins.push(PinSpec {
-                at: Hold::Point(place.0, place.1),
-                radius_m: 0.002,
-                from_s: (100.0 * time).round() / 100.0,
-                until_s: None,
-                path: Vec::new(),
-            });
-        }
-    });
+    also_in_scenario(
+        watch,
+        if takes_off { "take a pin off" } else { "pin" },
+        |spec| {
+            let close = |pin: &PinSpec| match pin.at {
+                Hold::Point(u, v) => (u - place.0).hypot(v - place.1) < 0.02,
+                _ => false,
+            };
+            if takes_off {
+                spec.pins.retain(|pin| !close(pin));
+            } else {
+                spec.pins.push(PinSpec {
+                    at: Hold::Point(place.0, place.1),
+                    radius_m: 0.002,
+                    from_s: (100.0 * time).round() / 100.0,
+                    until_s: None,
+                    path: Vec::new(),
+                });
+            }
+        },
+    );
 }
 
 /// Where a place in space is on the picture of the studio.
@@ -480,10 +536,14 @@ fn marks_in_space(painter: &egui::Painter, watch: &Watch, view: &View3d, space: 
     if let (Some(from), Some(to)) = (watch.tools.from, watch.tools.to)
         && watch.tools.tool == Tool::Crease
     {
-        let ends = [from, to].map(|place| on_cloth(watch, place).and_then(|p| seen_at(view, space, p)));
+        let ends =
+            [from, to].map(|place| on_cloth(watch, place).and_then(|p| seen_at(view, space, p)));
         if let [Some(from), Some(to)] = ends {
             painter.line_segment([from, to], Stroke::new(3.0, Color32::from_black_alpha(140)));
-            painter.line_segment([from, to], Stroke::new(1.5, Color32::from_rgb(255, 200, 60)));
+            painter.line_segment(
+                [from, to],
+                Stroke::new(1.5, Color32::from_rgb(255, 200, 60)),
+            );
         }
     }
     if let Some((uv, _)) = watch.tools.held

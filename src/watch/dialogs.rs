@@ -87,10 +87,12 @@ pub fn dropped(watch: &mut Watch, path: PathBuf) {
             watch.send_edit("resist from a picture", false);
             watch.tell("the picture is resist now: dark keeps dye out");
         }
-        Dropped::Unknown => watch.problem = Some(format!(
-            "{} is neither a scenario (.ron), a draft (.wif) nor a picture (.png, .jpg)",
-            path.display()
-        )),
+        Dropped::Unknown => {
+            watch.problem = Some(format!(
+                "{} is neither a scenario (.ron), a draft (.wif) nor a picture (.png, .jpg)",
+                path.display()
+            ))
+        }
     }
 }
 
@@ -126,7 +128,11 @@ impl Watch {
             frames: Some(form.frames),
             video: form.video,
             force: form.force,
-            view: if form.draped { View::Draped } else { View::Flat },
+            view: if form.draped {
+                View::Draped
+            } else {
+                View::Flat
+            },
             ..Options::default()
         };
         self.recorded = None;
@@ -171,34 +177,40 @@ fn record(ctx: &egui::Context, watch: &mut Watch) {
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, vec2(0.0, 0.0))
         .show(ctx, |ui| {
-            egui::Grid::new("record").num_columns(2).spacing([10.0, 8.0]).show(ui, |ui| {
-                ui.label("Folder");
-                ui.horizontal(|ui| {
-                    ui.add(egui::TextEdit::singleline(&mut form.folder).desired_width(300.0));
-                    if ui.button("…").on_hover_text("Choose a folder").clicked() {
-                        watch.files.ask(Wanted::RecordTo, "");
-                        watch.open.record = false;
-                    }
-                });
-                ui.end_row();
-                ui.label("Frames");
-                let most = watch.edit.process.steps().saturating_add(1).min(100_000) as u32;
-                ui.add(egui::DragValue::new(&mut form.frames).range(1..=most));
-                ui.end_row();
-                ui.label("View");
-                ui.horizontal(|ui| {
-                    ui.selectable_value(&mut form.draped, false, "flat");
-                    ui.selectable_value(&mut form.draped, true, "draped");
-                });
-                ui.end_row();
-                ui.label("Film");
-                ui.add_enabled(ffmpeg_is_there(), egui::Checkbox::new(&mut form.video, "video.mp4"))
+            egui::Grid::new("record")
+                .num_columns(2)
+                .spacing([10.0, 8.0])
+                .show(ui, |ui| {
+                    ui.label("Folder");
+                    ui.horizontal(|ui| {
+                        ui.add(egui::TextEdit::singleline(&mut form.folder).desired_width(300.0));
+                        if ui.button("…").on_hover_text("Choose a folder").clicked() {
+                            watch.files.ask(Wanted::RecordTo, "");
+                            watch.open.record = false;
+                        }
+                    });
+                    ui.end_row();
+                    ui.label("Frames");
+                    let most = watch.edit.process.steps().saturating_add(1).min(100_000) as u32;
+                    ui.add(egui::DragValue::new(&mut form.frames).range(1..=most));
+                    ui.end_row();
+                    ui.label("View");
+                    ui.horizontal(|ui| {
+                        ui.selectable_value(&mut form.draped, false, "flat");
+                        ui.selectable_value(&mut form.draped, true, "draped");
+                    });
+                    ui.end_row();
+                    ui.label("Film");
+                    ui.add_enabled(
+                        ffmpeg_is_there(),
+                        egui::Checkbox::new(&mut form.video, "video.mp4"),
+                    )
                     .on_disabled_hover_text("needs the program ffmpeg");
-                ui.end_row();
-                ui.label("");
-                ui.checkbox(&mut form.force, "replace a recording that is there");
-                ui.end_row();
-            });
+                    ui.end_row();
+                    ui.label("");
+                    ui.checkbox(&mut form.force, "replace a recording that is there");
+                    ui.end_row();
+                });
             ui.add_space(4.0);
             ui.weak("From the beginning to the end, in frames like those of `dyelapse record`.");
             ui.add_space(6.0);
@@ -288,13 +300,16 @@ fn keys(ctx: &egui::Context, watch: &mut Watch) {
         .show(ctx, |ui| {
             ui.horizontal_top(|ui| {
                 for (i, half) in KEYS.chunks(KEYS.len().div_ceil(2)).enumerate() {
-                    egui::Grid::new(("keys", i)).num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
-                        for (key, what) in half {
-                            ui.monospace(*key);
-                            ui.label(*what);
-                            ui.end_row();
-                        }
-                    });
+                    egui::Grid::new(("keys", i))
+                        .num_columns(2)
+                        .spacing([14.0, 4.0])
+                        .show(ui, |ui| {
+                            for (key, what) in half {
+                                ui.monospace(*key);
+                                ui.label(*what);
+                                ui.end_row();
+                            }
+                        });
                     if i == 0 {
                         ui.separator();
                     }

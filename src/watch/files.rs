@@ -113,12 +113,13 @@ impl Files {
         let told = Arc::new(AtomicBool::new(false));
         let tell = told.clone();
         let own = file.clone();
-        let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
-            let is_change = |event: &notify::Event| !event.kind.is_access();
-            if event.is_ok_and(|event| is_change(&event) && event.paths.contains(&own)) {
-                tell.store(true, Ordering::Relaxed);
-            }
-        })?;
+        let mut watcher =
+            notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
+                let is_change = |event: &notify::Event| !event.kind.is_access();
+                if event.is_ok_and(|event| is_change(&event) && event.paths.contains(&own)) {
+                    tell.store(true, Ordering::Relaxed);
+                }
+            })?;
         // The folder: many editors write another file and rename it.
         let folder = file.parent().unwrap_or(Path::new("."));
         watcher.watch(folder, RecursiveMode::NonRecursive)?;
@@ -135,10 +136,14 @@ impl Files {
     pub fn has_changed(&mut self) -> bool {
         let told = self.watched.as_ref();
         if told.is_some_and(|(_, told)| told.swap(false, Ordering::Relaxed)) {
-            let own = self.ignored_until.is_some_and(|until| Instant::now() < until);
+            let own = self
+                .ignored_until
+                .is_some_and(|until| Instant::now() < until);
             self.changed = (!own).then(Instant::now);
         }
-        let settled = self.changed.is_some_and(|changed| changed.elapsed() > SETTLED);
+        let settled = self
+            .changed
+            .is_some_and(|changed| changed.elapsed() > SETTLED);
         if settled {
             self.changed = None;
         }

@@ -14,13 +14,17 @@ const SIZE: egui::Vec2 = vec2(132.0, 99.0);
 
 /// The bytes of a scenario's picture.
 pub fn thumbnail(name: &str) -> Option<&'static [u8]> {
-    THUMBNAILS.get_file(format!("{name}.jpg")).map(include_dir::File::contents)
+    THUMBNAILS
+        .get_file(format!("{name}.jpg"))
+        .map(include_dir::File::contents)
 }
 
 /// The title of a scenario, from its text.
 pub fn title(text: &str) -> &str {
     let after = text.split_once("title: \"").map(|(_, after)| after);
-    after.and_then(|after| after.split_once('"')).map_or("", |(title, _)| title)
+    after
+        .and_then(|after| after.split_once('"'))
+        .map_or("", |(title, _)| title)
 }
 
 /// What the comment at the top of a scenario says.
@@ -51,17 +55,19 @@ pub fn show(ctx: &egui::Context, watch: &mut Watch) {
                 }
             });
             ui.separator();
-            egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    let mut all: Vec<_> = bundled().collect();
-                    all.sort_by_key(|scenario| scenario.name);
-                    for scenario in all {
-                        if card(ui, watch, scenario.name, scenario.text) {
-                            chosen = Some(Some(scenario.name));
+            egui::ScrollArea::vertical()
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        let mut all: Vec<_> = bundled().collect();
+                        all.sort_by_key(|scenario| scenario.name);
+                        for scenario in all {
+                            if card(ui, watch, scenario.name, scenario.text) {
+                                chosen = Some(Some(scenario.name));
+                            }
                         }
-                    }
+                    });
                 });
-            });
         });
     match chosen {
         Some(Some(name)) => {
@@ -93,8 +99,10 @@ fn card(ui: &mut egui::Ui, watch: &mut Watch, name: &'static str, text: &'static
             ui.set_width(SIZE.x);
             let response = match texture {
                 Some(texture) => ui.add(
-                    egui::Button::image(egui::Image::new(&texture).fit_to_exact_size(SIZE - vec2(12.0, 6.0)))
-                        .min_size(SIZE),
+                    egui::Button::image(
+                        egui::Image::new(&texture).fit_to_exact_size(SIZE - vec2(12.0, 6.0)),
+                    )
+                    .min_size(SIZE),
                 ),
                 None => ui.add_sized(SIZE, egui::Button::new(name)),
             };
@@ -115,7 +123,10 @@ mod tests {
         for scenario in bundled() {
             let picture = thumbnail(scenario.name);
             let picture = picture.unwrap_or_else(|| {
-                panic!("{} has no thumbnail: cargo run --release --example draw_thumbnails", scenario.name)
+                panic!(
+                    "{} has no thumbnail: cargo run --release --example draw_thumbnails",
+                    scenario.name
+                )
             });
             let picture = image::load_from_memory(picture).unwrap();
             assert!(picture.width() >= 160, "{}", scenario.name);

@@ -216,7 +216,8 @@ impl Hanging {
 
     fn nearest(&self, (u, v): Place) -> usize {
         let (nx, ny) = self.hung.drape.sheet().topology.particles;
-        let along = |share: f64, n: usize| (share.clamp(0.0, 1.0) * (n - 1) as f64).round() as usize;
+        let along =
+            |share: f64, n: usize| (share.clamp(0.0, 1.0) * (n - 1) as f64).round() as usize;
         along(v, ny) * nx + along(u, nx)
     }
 

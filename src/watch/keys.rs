@@ -71,9 +71,8 @@ impl Watch {
 
 /// Does what the keys that were pressed ask for.
 pub fn act(ctx: &egui::Context, watch: &mut Watch, view: &mut View3d) {
-    let press = |modifiers: Modifiers, key: Key| {
-        ctx.input_mut(|input| input.consume_key(modifiers, key))
-    };
+    let press =
+        |modifiers: Modifiers, key: Key| ctx.input_mut(|input| input.consume_key(modifiers, key));
     if press(Modifiers::COMMAND | Modifiers::SHIFT, Key::S) {
         let name = watch.name.clone();
         watch.files.ask(Wanted::SaveAs, &name);
@@ -84,7 +83,11 @@ pub fn act(ctx: &egui::Context, watch: &mut Watch, view: &mut View3d) {
     if press(Modifiers::COMMAND, Key::O) {
         watch.files.ask(Wanted::Open, "");
     }
-    for (key, by) in [(Key::Plus, 1.1), (Key::Equals, 1.1), (Key::Minus, 1.0 / 1.1)] {
+    for (key, by) in [
+        (Key::Plus, 1.1),
+        (Key::Equals, 1.1),
+        (Key::Minus, 1.0 / 1.1),
+    ] {
         if press(Modifiers::COMMAND, key) {
             watch.settings.zoom = (watch.settings.zoom * by).clamp(0.5, 3.0);
         }
@@ -101,7 +104,10 @@ pub fn act(ctx: &egui::Context, watch: &mut Watch, view: &mut View3d) {
     }
     time(&press, watch);
     views(&press, watch, view);
-    for (tool, key) in Tool::ALL.into_iter().zip([Key::V, Key::B, Key::H, Key::N, Key::C, Key::X]) {
+    for (tool, key) in Tool::ALL
+        .into_iter()
+        .zip([Key::V, Key::B, Key::H, Key::N, Key::C, Key::X])
+    {
         if press(Modifiers::NONE, key) {
             watch.tools.tool = tool;
         }
@@ -139,7 +145,9 @@ fn time(press: &impl Fn(Modifiers, Key) -> bool, watch: &mut Watch) {
     }
     if press(Modifiers::NONE, Key::ArrowLeft) {
         let frame = (speed / 60.0).round().max(1.0) as u64;
-        watch.worker.order(Order::GoTo(target.saturating_sub(frame)));
+        watch
+            .worker
+            .order(Order::GoTo(target.saturating_sub(frame)));
     }
     if press(Modifiers::NONE, Key::Home) {
         watch.worker.order(Order::GoTo(0));

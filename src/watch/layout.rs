@@ -1,8 +1,8 @@
 //! Where everything is in the window.
 
 use bevy::prelude::*;
-use bevy_egui::egui::{self, Ui, UiBuilder};
 use bevy_egui::EguiContexts;
+use bevy_egui::egui::{self, Ui, UiBuilder};
 
 use super::settings::Layout;
 use super::state::Watch;
@@ -111,7 +111,13 @@ fn middle(root: &mut Ui, watch: &mut Watch, view: &mut View3d, textures: Texture
                 Layout::Both => {
                     let (left, right) = space.split_left_right_at_fraction(0.5);
                     canvas::flat(ui, left.shrink2(egui::vec2(0.5, 0.0)), watch, textures);
-                    canvas::draped(ui, right.shrink2(egui::vec2(0.5, 0.0)), watch, view, textures);
+                    canvas::draped(
+                        ui,
+                        right.shrink2(egui::vec2(0.5, 0.0)),
+                        watch,
+                        view,
+                        textures,
+                    );
                 }
             }
         });
@@ -127,12 +133,18 @@ fn problem(ui: &mut Ui, watch: &mut Watch) {
         .inner_margin(8);
     egui::Panel::top("problem").frame(frame).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            if ui.button("✖").on_hover_text("Put this message away").clicked() {
+            if ui
+                .button("✖")
+                .on_hover_text("Put this message away")
+                .clicked()
+            {
                 watch.problem = None;
             }
             egui::ScrollArea::both().max_height(140.0).show(ui, |ui| {
                 let text = egui::RichText::new(problem).monospace();
-                ui.add(egui::Label::new(text.color(egui::Color32::from_rgb(255, 214, 204))).extend());
+                ui.add(
+                    egui::Label::new(text.color(egui::Color32::from_rgb(255, 214, 204))).extend(),
+                );
             });
         });
     });

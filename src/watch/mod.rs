@@ -105,7 +105,8 @@ pub enum NoWindow {
 /// [`NoWindow`] if there is none.
 pub fn run(options: &Options) -> Result<(), NoWindow> {
     let settings = Settings::load();
-    let script = Script::load(options.script.as_ref(), options.log.as_ref()).map_err(NoWindow::Script)?;
+    let script =
+        Script::load(options.script.as_ref(), options.log.as_ref()).map_err(NoWindow::Script)?;
     let experiment = match (&options.scenario, &settings.last) {
         (Some(name), _) => Experiment::load(name)?,
         // What was open last may be gone.
@@ -116,7 +117,9 @@ pub fn run(options: &Options) -> Result<(), NoWindow> {
         return Err(NoWindow::Display);
     }
     check_driver()?;
-    let (width, height) = options.size.unwrap_or((settings.window.0 as u32, settings.window.1 as u32));
+    let (width, height) = options
+        .size
+        .unwrap_or((settings.window.0 as u32, settings.window.1 as u32));
     let window = WindowPlugin {
         primary_window: Some(Window {
             title: "dyelapse".into(),

@@ -28,8 +28,14 @@ pub fn panel(root: &mut Ui, watch: &mut Watch) {
             let space = ui.available_rect_before_wrap();
             if cut {
                 let (left, right) = space.split_left_right_at_fraction(0.4);
-                ledger(&mut ui.new_child(egui::UiBuilder::new().max_rect(left.shrink(2.0))), watch);
-                section(&mut ui.new_child(egui::UiBuilder::new().max_rect(right.shrink(4.0))), watch);
+                ledger(
+                    &mut ui.new_child(egui::UiBuilder::new().max_rect(left.shrink(2.0))),
+                    watch,
+                );
+                section(
+                    &mut ui.new_child(egui::UiBuilder::new().max_rect(right.shrink(4.0))),
+                    watch,
+                );
             } else {
                 ledger(ui, watch);
             }
@@ -64,7 +70,11 @@ fn ledger(ui: &mut Ui, watch: &Watch) {
             for line in lines {
                 plot.line(line);
             }
-            plot.vline(VLine::new("now", seen.hours).color(Color32::from_gray(150)).width(1.0));
+            plot.vline(
+                VLine::new("now", seen.hours)
+                    .color(Color32::from_gray(150))
+                    .width(1.0),
+            );
         });
 }
 
@@ -77,7 +87,11 @@ fn section(ui: &mut Ui, watch: &mut Watch) {
             ui.weak(format!("{:.2} mm", section.mm));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.small_button("✖").on_hover_text("Put the line away").clicked() {
+            if ui
+                .small_button("✖")
+                .on_hover_text("Put the line away")
+                .clicked()
+            {
                 watch.tools.cut = None;
                 watch.worker.order(Order::Cut(None));
             }
@@ -133,14 +147,24 @@ fn layers(ui: &mut Ui, watch: &Watch, section: &Section) {
         let x = |mm: f64| rect.left() + (mm / length) as f32 * rect.width();
         let (left, right) = (x(place.mm), x(end).max(x(place.mm) + 0.7));
         for sample in &place.layers {
-            let top = if sample.on_top { rect.top() } else { rect.top() + half };
+            let top = if sample.on_top {
+                rect.top()
+            } else {
+                rect.top() + half
+            };
             let cell = Rect::from_min_max(pos2(left, top + 1.0), pos2(right, top + half - 1.0));
             if sample.yarn.is_some() {
-                let [r, g, b] = ramp.colour(sample.free + sample.bound).map(|c| (255.0 * c) as u8);
+                let [r, g, b] = ramp
+                    .colour(sample.free + sample.bound)
+                    .map(|c| (255.0 * c) as u8);
                 painter.rect_filled(cell, 0.0, Color32::from_rgb(r, g, b));
             }
         }
-        let resist = place.layers.iter().map(|sample| sample.resist).fold(0.0, f32::max);
+        let resist = place
+            .layers
+            .iter()
+            .map(|sample| sample.resist)
+            .fold(0.0, f32::max);
         if resist > 0.01 {
             let alpha = (200.0 * resist) as u8;
             let bar = [pos2(left, rect.center().y), pos2(right, rect.center().y)];

@@ -44,7 +44,10 @@ impl Running {
         let total = options
             .steps
             .unwrap_or_else(|| experiment.scenario.process.steps());
-        let (step, stop) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicBool::new(false)));
+        let (step, stop) = (
+            Arc::new(AtomicU64::new(0)),
+            Arc::new(AtomicBool::new(false)),
+        );
         let (at, stopped) = (step.clone(), stop.clone());
         let folder = options.out.clone();
         let thread = std::thread::Builder::new()

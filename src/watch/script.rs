@@ -122,10 +122,13 @@ impl Script {
         let mut read = Script::default();
         if let Some(path) = script {
             let at = path.display();
-            let text = std::fs::read_to_string(path).map_err(|why| format!("cannot read {at}: {why}"))?;
+            let text =
+                std::fs::read_to_string(path).map_err(|why| format!("cannot read {at}: {why}"))?;
             let options = ron::Options::default()
                 .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-            let acts: Vec<Act> = options.from_str(&text).map_err(|why| format!("{at}:{why}"))?;
+            let acts: Vec<Act> = options
+                .from_str(&text)
+                .map_err(|why| format!("{at}:{why}"))?;
             read.acts = acts.into();
         }
         if let Some(path) = log {
@@ -191,7 +194,9 @@ fn count_frame(frames: &mut Frames) {
 /// A line of the log: what was done, and how things are.
 fn state(watch: &mut Watch, act: &Act) -> String {
     let frames = std::mem::take(&mut watch.script.frames);
-    let seconds = frames.since.map_or(0.0, |since| since.elapsed().as_secs_f64());
+    let seconds = frames
+        .since
+        .map_or(0.0, |since| since.elapsed().as_secs_f64());
     let seen = watch.seen.as_ref();
     let (step, target, edits) = seen.map_or((0, 0, 0), |seen| (seen.step, seen.target, seen.edits));
     let act = format!("{act:?}").replace(' ', "");
@@ -208,7 +213,11 @@ fn state(watch: &mut Watch, act: &Act) -> String {
 /// Does an act, or sees whether it is done; true once it is.
 fn is_done(world: &mut World, watch: &mut Watch, act: &Act, elapsed: Duration) -> bool {
     let arrived = |watch: &Watch| {
-        watch.is_in_step() && watch.seen.as_ref().is_some_and(|seen| seen.step == seen.target)
+        watch.is_in_step()
+            && watch
+                .seen
+                .as_ref()
+                .is_some_and(|seen| seen.step == seen.target)
     };
     match act {
         Act::Wait(seconds) => return elapsed.as_secs_f64() >= *seconds,
@@ -350,7 +359,12 @@ fn keep_picture(world: &mut World, watch: &mut Watch) {
         return;
     }
     let shown = &seen.sides[0];
-    let pixels = shown.levels.as_chunks::<4>().0.iter().take(shown.width * shown.height);
+    let pixels = shown
+        .levels
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .take(shown.width * shown.height);
     let rgb: Vec<u8> = pixels.flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
     let picture = image::RgbImage::from_raw(shown.width as u32, shown.height as u32, rgb);
     match picture.map(|picture| picture.save(&file)) {
@@ -366,5 +380,8 @@ fn free_name(name: &str) -> PathBuf {
         1 => PathBuf::from(format!("{name}.png")),
         i => PathBuf::from(format!("{name}_{i}.png")),
     };
-    (1..).map(numbered).find(|file| !file.exists()).unwrap_or_default()
+    (1..)
+        .map(numbered)
+        .find(|file| !file.exists())
+        .unwrap_or_default()
 }

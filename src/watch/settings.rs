@@ -71,7 +71,11 @@ impl Settings {
             false => 1280.0,
         };
         self.window = (side(self.window.0), side(self.window.1).max(480.0));
-        self.zoom = if self.zoom.is_finite() { self.zoom.clamp(0.5, 3.0) } else { 1.0 };
+        self.zoom = if self.zoom.is_finite() {
+            self.zoom.clamp(0.5, 3.0)
+        } else {
+            1.0
+        };
         self
     }
 

@@ -7,6 +7,7 @@ use bevy::prelude::*;
 use bevy_egui::egui;
 use bevy_egui::{EguiTextureHandle, EguiUserTextures};
 
+use super::dialogs::{Leaving, RecordForm};
 use super::files::{Files, Wanted};
 use super::hanger::{Deed, Hanger, Moment};
 use super::panel::PanelState;
@@ -15,7 +16,6 @@ use super::script::Script;
 use super::settings::Settings;
 use super::tools::Tools;
 use super::view3d;
-use super::dialogs::{Leaving, RecordForm};
 use super::worker::{Order, Pace, Seen, Worker};
 use crate::scenario::{Draping, Experiment, Origin, Scenario, ViewSpec};
 use crate::session::overlay::{self, Field};
@@ -104,7 +104,12 @@ const TOLD: Duration = Duration::from_secs(6);
 
 fn hangs_by(scenario: &Scenario) -> HangsBy {
     let view = scenario.view.clone();
-    (scenario.drape.clone(), view, scenario.cloth.cells(), scenario.seed)
+    (
+        scenario.drape.clone(),
+        view,
+        scenario.cloth.cells(),
+        scenario.seed,
+    )
 }
 
 impl Watch {
@@ -237,7 +242,11 @@ impl Watch {
 
     /// The scenario as the process has it, as a file says it.
     pub fn text(&self) -> String {
-        save(self.seen.as_ref().map_or(&self.edit, |seen| &seen.experiment.scenario))
+        save(
+            self.seen
+                .as_ref()
+                .map_or(&self.edit, |seen| &seen.experiment.scenario),
+        )
     }
 
     /// What the text says, where the window's files lie: what is recorded.
@@ -245,7 +254,10 @@ impl Watch {
     /// # Errors
     /// What is wrong with it, which should never be.
     pub fn as_saved(&self) -> Result<Experiment, String> {
-        let origin = self.seen.as_ref().map_or(Origin::Memory, |seen| seen.experiment.origin.clone());
+        let origin = self
+            .seen
+            .as_ref()
+            .map_or(Origin::Memory, |seen| seen.experiment.origin.clone());
         let name = format!("{}.ron", self.name);
         Experiment::parse(&name, origin, self.text()).map_err(|why| why.to_string())
     }
@@ -308,7 +320,12 @@ fn take_seen(world: &mut World, watch: &mut Watch, seen: Seen) {
         return;
     }
     let front = &seen.sides[0];
-    let image = image_of_levels(front.levels.clone(), front.width, front.height, Kind::Colour);
+    let image = image_of_levels(
+        front.levels.clone(),
+        front.width,
+        front.height,
+        Kind::Colour,
+    );
     put(world, &watch.flat, image);
     if let Some(overlay) = &seen.overlay {
         let levels = overlay.rgba();
@@ -316,9 +333,10 @@ fn take_seen(world: &mut World, watch: &mut Watch, seen: Seen) {
         image.texture_descriptor.mip_level_count = 1;
         put(world, &watch.over, image);
     }
-    let new_relief = watch.seen.as_ref().is_none_or(|old| {
-        !std::sync::Arc::ptr_eq(&old.reliefs[0], &seen.reliefs[0])
-    });
+    let new_relief = watch
+        .seen
+        .as_ref()
+        .is_none_or(|old| !std::sync::Arc::ptr_eq(&old.reliefs[0], &seen.reliefs[0]));
     let in_step = seen.edits == watch.sent;
     if in_step {
         if watch.edit != seen.experiment.scenario {
@@ -328,7 +346,11 @@ fn take_seen(world: &mut World, watch: &mut Watch, seen: Seen) {
         if watch.hangs_by.as_ref() != Some(&by) {
             watch.hang();
         }
-        if watch.seen.as_ref().is_none_or(|old| old.problem != seen.problem) {
+        if watch
+            .seen
+            .as_ref()
+            .is_none_or(|old| old.problem != seen.problem)
+        {
             watch.problem = seen.problem.clone();
         }
     }
@@ -362,7 +384,9 @@ fn take_moment(world: &mut World, watch: &mut Watch, moment: Moment) {
             view3d.reset(&view);
         }
     }
-    if watch.moment.as_ref().map(|old| &old.problem) != Some(&moment.problem) && moment.problem.is_some() {
+    if watch.moment.as_ref().map(|old| &old.problem) != Some(&moment.problem)
+        && moment.problem.is_some()
+    {
         watch.problem.clone_from(&moment.problem);
     }
     watch.moment = Some(moment);

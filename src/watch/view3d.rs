@@ -98,7 +98,8 @@ impl Eye {
         let out = self.out();
         let right = DVec3::Y.cross(out).normalize_or(DVec3::X);
         let up = out.cross(right);
-        let way = (2.0 * x - 1.0) * opening.across * right + (1.0 - 2.0 * y) * opening.up * up - out;
+        let way =
+            (2.0 * x - 1.0) * opening.across * right + (1.0 - 2.0 * y) * opening.up * up - out;
         (self.at + self.distance * out, way.normalize())
     }
 }
@@ -239,10 +240,7 @@ impl View3d {
 /// Builds everything that the cloth lies on or hangs from, for another cloth.
 pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, furniture: &Furniture) {
     type Old = Or<(With<Thing>, With<Lamp>, With<Ground>)>;
-    let old: Vec<Entity> = world
-        .query_filtered::<Entity, Old>()
-        .iter(world)
-        .collect();
+    let old: Vec<Entity> = world.query_filtered::<Entity, Old>().iter(world).collect();
     for entity in old {
         world.despawn(entity);
     }
@@ -269,7 +267,10 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
     match (is_there, front, seen) {
         (false, Some(front), Some(seen)) => {
             let images = seen.sides.each_ref().map(|side| image(side, Kind::Colour));
-            let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal));
+            let reliefs = seen
+                .reliefs
+                .each_ref()
+                .map(|side| image(side, Kind::Normal));
             cloth::hang(world, cloth::shapes(front), images, reliefs);
             let handles = world.resource::<ClothAssets>().pictures.clone();
             let mut textures = world.resource_mut::<EguiUserTextures>();
@@ -294,7 +295,10 @@ pub fn show(world: &mut World, front: Option<&Fine>, seen: Option<&Seen>) {
 /// Gives the cloth another relief.
 pub fn relief(world: &mut World, seen: &Seen) {
     if world.contains_resource::<ClothAssets>() {
-        let reliefs = seen.reliefs.each_ref().map(|side| image(side, Kind::Normal));
+        let reliefs = seen
+            .reliefs
+            .each_ref()
+            .map(|side| image(side, Kind::Normal));
         cloth::emboss(world, reliefs);
     }
 }

@@ -255,10 +255,13 @@ impl Process {
             opened,
             edits: 0,
             playing: true,
-            pace: before.map_or(Pace::PerSecond(total as f64 / 20.0), |before| match before.pace {
-                Pace::PerFrame(steps) => Pace::PerFrame(steps),
-                Pace::PerSecond(_) => Pace::PerSecond(total as f64 / 20.0),
-            }),
+            pace: before.map_or(
+                Pace::PerSecond(total as f64 / 20.0),
+                |before| match before.pace {
+                    Pace::PerFrame(steps) => Pace::PerFrame(steps),
+                    Pace::PerSecond(_) => Pace::PerSecond(total as f64 / 20.0),
+                },
+            ),
             overlay: before.and_then(|before| before.overlay),
             cut: before.and_then(|before| before.cut),
             reliefs: [nothing.clone(), nothing],
@@ -515,9 +518,9 @@ impl Process {
             overlay: self
                 .overlay
                 .map(|(field, layer)| Arc::new(Overlay::of(world, field, layer, true))),
-            section: self.cut.map(|(from, to)| {
-                Arc::new(Section::along(world, in_cells(from), in_cells(to)))
-            }),
+            section: self
+                .cut
+                .map(|(from, to)| Arc::new(Section::along(world, in_cells(from), in_cells(to)))),
             course: Arc::new(self.session.course().clone()),
             kept: self.session.timeline().steps().collect(),
             undo: [
