@@ -182,12 +182,12 @@ impl<'a> Ends<'a> {
     }
 }
 
-/// Length and direction of a vector; of none, no direction.
+/// Length of a vector, 1/length, and direction; of none, no direction.
 #[inline(always)]
-fn polar(d: [f64; 3]) -> (f64, [f64; 3]) {
+fn polar(d: [f64; 3]) -> (f64, f64, [f64; 3]) {
     let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
     let per = 1.0 / r.max(1e-150);
-    (r, [d[0] * per, d[1] * per, d[2] * per])
+    (r, per, [d[0] * per, d[1] * per, d[2] * per])
 }
 
 /// along·n nᵀ + all·I.
@@ -229,7 +229,7 @@ fn bend_row<const BLOCKS_TOO: bool>(
         &mut yz[..n],
     ];
     for i in 0..n {
-        let (r, direction) = polar(ends.across(i));
+        let (r, _, direction) = polar(ends.across(i));
         let Pull {
             force: f,
             stiffness,
@@ -270,7 +270,7 @@ fn spring_row(
         &mut yz[..n],
     ];
     for i in 0..n {
-        let (r, direction) = polar(ends.across(i));
+        let (r, per, direction) = polar(ends.across(i));
         let Pull {
             force: f,
             stiffness,
@@ -278,7 +278,7 @@ fn spring_row(
         for c in 0..3 {
             force[c][i] = f * direction[c];
         }
-        let across = f.max(0.0) / r.max(1e-150);
+        let across = f.max(0.0) * per;
         let block_of = matrix(direction, alpha * (stiffness - across), alpha * across);
         for c in 0..BLOCK {
             block[c][i] = block_of[c] as f32;
@@ -318,8 +318,9 @@ fn stretch_row<const CHOI: bool, const BLOCKS_TOO: bool>(
         &mut xz[..n],
         &mut yz[..n],
     ];
+    let per_length = 1.0 / law.length;
     for i in 0..n {
-        let (r, direction) = polar(ends.across(i));
+        let (r, per, direction) = polar(ends.across(i));
         let pull = if CHOI && BLOCKS_TOO {
             let by = coming.across(i);
             let closing = by[0] * direction[0] + by[1] * direction[1] + by[2] * direction[2];
@@ -339,8 +340,8 @@ fn stretch_row<const CHOI: bool, const BLOCKS_TOO: bool>(
             let pushed = pushes[0][i] + pushes[1][i];
             // Ghosts at the end of a row look into the next plane.
             let pushed = if k[i] > 0.0 { pushed } else { 0.0 };
-            let across = (pull.force - pushed).max(0.0) / r.max(1e-150);
-            let bending = pushed / law.length;
+            let across = (pull.force - pushed).max(0.0) * per;
+            let bending = pushed * per_length;
             let all = law.alpha * (across + bending) + law.beta * k_d;
             let along = law.alpha * (pull.stiffness - across);
             let block_of = matrix(direction, along, all);
