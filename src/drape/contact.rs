@@ -256,3 +256,29 @@ pub fn apply(contacts: &[Contact], mass: &Rows<f32>, u: &Rows<f32>, out: &mut Ro
     }
     sum
 }
+
+/// What a particle that touches something rests on at the end of a step; nothing if it was let go.
+pub fn anchored(
+    touch: Touch,
+    by: DVec3,
+    end: DVec3,
+    mass: f64,
+    before: Option<Anchor>,
+    rule: Rule,
+) -> Option<Anchor> {
+    let out = touch.distance + by.dot(touch.normal);
+    let wanted = rule.apart.min(touch.distance + FASTEST_OUT * rule.step);
+    let stiffness = STIFFNESS * mass / rule.alpha;
+    let pressed = stiffness * (wanted - out);
+    if pressed <= 0.0 {
+        return None;
+    }
+    let mut at = before.map_or(end, |anchor| anchor.at);
+    let off = end - at;
+    let off = off - off.dot(touch.normal) * touch.normal;
+    let most = rule.friction * pressed / stiffness;
+    if off.length() > most {
+        at = end - off * (most / off.length());
+    }
+    Some(Anchor { at, pressed })
+}

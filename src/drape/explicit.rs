@@ -6,7 +6,9 @@
 use bevy::math::DVec3;
 
 use super::crease::CreaseLink;
+use super::drape::{Given, Integrator, Proposed};
 use super::lattice::Links;
+use super::pcg::Solved;
 use super::response::Response;
 use super::rows::{Rows, each};
 
@@ -108,4 +110,45 @@ fn add(a: &mut Rows, b: &Rows, by: f64) {
             }
         }
     });
+}
+
+/// What an explicit integrator proposes.
+pub(super) fn propose(given: &Given) -> Proposed {
+    let (nx, ny) = given.sheet.links.particles;
+    let (mut x, mut v) = (Rows::zero(nx, ny, 3), Rows::zero(nx, ny, 3));
+    for (i, lead) in given.lead.iter().enumerate() {
+        let held = given.mobility[i] <= 0.0;
+        x.set_particle(i, given.state.x[i]);
+        v.set_particle(
+            i,
+            if held {
+                *lead / given.step
+            } else {
+                given.state.v[i]
+            },
+        );
+    }
+    let mut cloth = Explicit::new(x, v);
+    let pulls = Pulls {
+        links: &given.sheet.links,
+        creases: &given.sheet.creases,
+        mass: &given.sheet.mass,
+        gravity: given.settings.gravity,
+    };
+    if given.settings.integrator == Integrator::Euler {
+        cloth.euler(pulls, given.step);
+    } else {
+        cloth.runge_kutta(pulls, given.step);
+    }
+    let moves = cloth.x.to_vectors().into_iter().zip(&given.state.x);
+    Proposed {
+        moves: moves.map(|(end, begin)| end - *begin).collect(),
+        v: cloth.v.to_vectors(),
+        touches: Vec::new(),
+        alpha: given.step * given.step,
+        solved: Solved {
+            iterations: 0,
+            residual: 0.0,
+        },
+    }
 }

@@ -58,21 +58,30 @@ pub struct Hit {
     pub distance: f64,
 }
 
-/// The first meeting of a ray with a cloth (Möller and Trumbore, *Fast, Minimum Storage Ray/Triangle
-/// Intersection*, 1997), from either side.
-pub fn hit(drape: &Drape, origin: DVec3, direction: DVec3) -> Option<Hit> {
-    let x = drape.positions();
-    let (nx, ny) = drape.sheet().links.particles;
-    let uv = |i: u32| {
-        let (column, row) = (i as usize % nx, i as usize / nx);
-        DVec2::new(
-            column as f64 / (nx - 1) as f64,
-            row as f64 / (ny - 1) as f64,
-        )
-    };
-    let mut first: Option<Hit> = None;
-    for (number, t) in drape.triangles().iter().enumerate() {
-        let [a, b, c] = t.map(|i| x[i as usize]);
+/// Where a ray first meets a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstHit {
+    /// The triangle, by number.
+    pub triangle: usize,
+    /// The shares of its corners in the place.
+    pub shares: [f64; 3],
+    /// How far along the ray, in lengths of its direction.
+    pub distance: f64,
+    /// Whether the ray comes from the back: the side from which the corners run clockwise.
+    pub from_back: bool,
+}
+
+/// The first meeting of a ray with triangles, from either side (Möller and Trumbore, *Fast, Minimum Storage
+/// Ray/Triangle Intersection*, 1997).
+pub fn first_hit(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<FirstHit> {
+    let mut first: Option<FirstHit> = None;
+    for (triangle, t) in triangles.iter().enumerate() {
+        let [a, b, c] = t.map(|i| positions[i as usize]);
         let (ab, ac) = (b - a, c - a);
         let p = direction.cross(ac);
         let determinant = ab.dot(p);
@@ -88,15 +97,35 @@ pub fn hit(drape: &Drape, origin: DVec3, direction: DVec3) -> Option<Hit> {
         if !is_inside || distance < 0.0 || first.is_some_and(|hit| hit.distance <= distance) {
             continue;
         }
-        let shares = [1.0 - of_b - of_c, of_b, of_c];
-        let nearest = (0..3).fold(0, |best, i| if shares[i] > shares[best] { i } else { best });
-        first = Some(Hit {
-            triangle: number,
-            particle: t[nearest] as usize,
-            uv: shares[0] * uv(t[0]) + shares[1] * uv(t[1]) + shares[2] * uv(t[2]),
-            point: origin + distance * direction,
+        first = Some(FirstHit {
+            triangle,
+            shares: [1.0 - of_b - of_c, of_b, of_c],
             distance,
+            from_back: determinant < 0.0,
         });
     }
     first
+}
+
+/// The first meeting of a ray with a cloth, from either side.
+pub fn hit(drape: &Drape, origin: DVec3, direction: DVec3) -> Option<Hit> {
+    let x = drape.positions();
+    let (nx, ny) = drape.sheet().links.particles;
+    let uv = |i: u32| {
+        let (column, row) = (i as usize % nx, i as usize / nx);
+        DVec2::new(
+            column as f64 / (nx - 1) as f64,
+            row as f64 / (ny - 1) as f64,
+        )
+    };
+    let first = first_hit(x, drape.triangles(), origin, direction)?;
+    let (t, shares) = (drape.triangles()[first.triangle], first.shares);
+    let nearest = (0..3).fold(0, |best, i| if shares[i] > shares[best] { i } else { best });
+    Some(Hit {
+        triangle: first.triangle,
+        particle: t[nearest] as usize,
+        uv: shares[0] * uv(t[0]) + shares[1] * uv(t[1]) + shares[2] * uv(t[2]),
+        point: origin + first.distance * direction,
+        distance: first.distance,
+    })
 }

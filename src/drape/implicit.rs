@@ -14,12 +14,13 @@
 //! M − α·∂f/∂x − β·∂f/∂v is to be solved once. Conjugate gradients begin with the best sum of multiples of
 //! the last two moves: cloth hardly changes its mind within a 240th of a second.
 
+mod contacts;
+
 use bevy::math::DVec3;
 
-use super::collide::distance::{Pair, combine};
-use super::contact::{Added, Contact, Rule, Touch, product};
+use super::contact::{Contact, product};
 use super::drape::{Given, Integrator, Proposed, Sheet};
-use super::pcg::Work;
+use super::pcg::{Goal, Work};
 use super::response::{Ahead, Response};
 use super::rows::{Rows, each, each2};
 use super::system::System;
@@ -49,6 +50,10 @@ pub(super) struct Implicit {
 /// α of BDF2 as a share of backward Euler's: a particle whose past says nothing, as it was stopped by
 /// something, takes a step of backward Euler among others that take one of BDF2.
 const FRESH: f64 = 4.0 / 9.0;
+
+/// The tolerance is a share of the forces there are, but at least of so many times the weight: cloth almost
+/// at rest need not be solved for to a thousandth of next to nothing. What is left is there in the next step.
+const TIMES_WEIGHT: f64 = 3.0;
 
 /// α, β and whether the step is BDF2's.
 #[derive(Clone, Copy)]
@@ -148,10 +153,17 @@ impl Implicit {
         }
         let [last, before] = &self.guesses;
         self.solver.begin(&system, [last, before], &mut self.u);
-        let (tolerance, most) = (given.settings.tolerance, given.settings.iterations);
+        let goal = Goal {
+            tolerance: given.settings.tolerance,
+            least: TIMES_WEIGHT
+                * given.settings.gravity.length()
+                * scheme.alpha
+                * sheet.weighs().sqrt(),
+            iterations: given.settings.iterations,
+        };
         let solved = self
             .solver
-            .solve(&system, &mut self.yarns, &mut self.u, tolerance, most);
+            .solve(&system, &mut self.yarns, &mut self.u, goal);
         self.guesses.swap(0, 1);
         self.guesses[0].clone_from(&self.u);
         let nx = sheet.links.particles.0;
@@ -265,98 +277,6 @@ impl Implicit {
             }
         }
     }
-
-    /// Adds contacts; returns those of particles with what does not move.
-    fn take_contacts(&mut self, given: &Given, scheme: Scheme) -> Vec<Touch> {
-        let state = given.state;
-        let count = state.x.len();
-        let rule = Rule {
-            apart: given.settings.thickness,
-            friction: given.settings.friction,
-            alpha: scheme.alpha,
-            step: given.step,
-        };
-        let guess = |i: usize| {
-            if i < count {
-                about(given, i)
-            } else {
-                DVec3::ZERO
-            }
-        };
-        let corner = |i: usize| match state.x.get(i) {
-            Some(x) => *x,
-            None => given.colliders.mesh.corners[i - count],
-        };
-        let mut touches = Vec::new();
-        let mut touch = |i: usize, distance: f64, normal: DVec3| {
-            // What was pressed stays in touch until a step has shown that it leaves: deciding anew
-            // in every step would let cloth at rest tremble.
-            let rests = state.anchors[i].is_some() && distance < 1.1 * rule.apart;
-            if given.mobility[i] > 0.0 && (rests || rule.acts(distance, guess(i).dot(normal))) {
-                touches.push(Touch {
-                    particle: i as u32,
-                    normal,
-                    distance,
-                });
-            }
-        };
-        self.contacts.clear();
-        let mut added = Added {
-            own: &mut self.own,
-            pull: &mut self.pull,
-            contacts: &mut self.contacts,
-        };
-        for exact in &given.colliders.exact {
-            for (i, x) in state.x.iter().enumerate() {
-                let (distance, normal) = exact.distance(*x, given.covered);
-                touch(i, distance, normal);
-            }
-        }
-        for pair in given.pairs {
-            let corners = pair.corners().map(|i| i as usize);
-            let alone = matches!(pair, Pair::PointTriangle(_)) && corners[0] < count;
-            if alone && corners[1] >= count {
-                let x = corners.map(corner);
-                let out = combine(pair.weights(x), x);
-                touch(corners[0], out.length(), out.normalize_or_zero());
-            } else {
-                added.pair(*pair, corner, guess, |i| given.mobility[i], rule);
-            }
-        }
-        drop_the_same_face(&mut touches, &state.x);
-        for touch in &touches {
-            let i = touch.particle as usize;
-            let mass = 1.0 / given.mobility[i];
-            added.touch(*touch, mass, (state.x[i], guess(i)), state.anchors[i], rule);
-        }
-        touches
-    }
-}
-
-/// Leaves of the touches of a particle with the triangles of one flat face only the nearest: the closest
-/// points of the others lie on their edges, and would push along the face.
-fn drop_the_same_face(touches: &mut Vec<Touch>, x: &[DVec3]) {
-    touches.sort_by(|a, b| {
-        a.particle
-            .cmp(&b.particle)
-            .then(a.distance.total_cmp(&b.distance))
-    });
-    let mut kept: Vec<Touch> = Vec::with_capacity(touches.len());
-    for touch in touches.iter() {
-        let at = |touch: &Touch| x[touch.particle as usize] - touch.distance * touch.normal;
-        let is_same = |nearer: &&Touch| {
-            let along = at(touch) - at(nearer);
-            along.dot(nearer.normal).abs() <= 1e-6 * nearer.distance
-        };
-        let before = kept
-            .iter()
-            .rev()
-            .take_while(|nearer| nearer.particle == touch.particle);
-        if before.filter(is_same).count() == 0 {
-            kept.push(*touch);
-        }
-    }
-    *touches = kept;
 }
 
 /// Where a particle will about go: on as before.

@@ -19,6 +19,17 @@ pub struct Work {
     q: Rows<f32>,
 }
 
+/// When a system counts as solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// The share of √(r·P⁻¹r) that may be left.
+    pub tolerance: f64,
+    /// As much √(r·P⁻¹r) as need not be seen: of less, no share is asked for.
+    pub least: f64,
+    /// The most iterations.
+    pub iterations: usize,
+}
+
 /// How a system was solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
@@ -74,22 +85,22 @@ impl Work {
         }
     }
 
-    /// Solves A·u = b from the `u` that there is, `r` holding b − A·u, until the residual has fallen
-    /// by `tolerance` or `most` iterations are done.
+    /// Solves A·u = b from the `u` that there is, `r` holding b − A·u, until √(r·P⁻¹r) has fallen by
+    /// `goal.tolerance`, or to that share of `goal.least`, or `goal.iterations` are done.
     pub fn solve(
         &mut self,
         system: &System,
         precondition: &mut impl Precondition,
         u: &mut Rows<f32>,
-        tolerance: f64,
-        most: usize,
+        goal: Goal,
     ) -> Solved {
         let Work { r, z, p, q } = self;
         let mut rz = precondition.apply(r, z);
         p.clone_from(z);
         let begin = rz;
+        let enough = goal.tolerance * goal.tolerance * begin.max(goal.least * goal.least);
         let mut iterations = 0;
-        while iterations < most && rz > tolerance * tolerance * begin && rz > 0.0 {
+        while iterations < goal.iterations && rz > enough && rz > 0.0 {
             let pq = system.apply(p, q);
             if pq.is_nan() || pq <= 0.0 {
                 break;

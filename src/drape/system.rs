@@ -234,10 +234,10 @@ pub fn load<S: Simd>(row: &[f32], at: usize) -> S::f32s {
 #[inline(always)]
 fn add_times<S: Simd>(simd: S, sum: &mut [S::f32s; 3], block: [S::f32s; BLOCK], u: [S::f32s; 3]) {
     for c in 0..3 {
-        let [a, b, d] = SYMMETRIC[c];
-        let ab = simd.add_f32s(simd.mul_f32s(block[a], u[0]), simd.mul_f32s(block[b], u[1]));
-        let all = simd.add_f32s(ab, simd.mul_f32s(block[d], u[2]));
-        sum[c] = simd.add_f32s(sum[c], all);
+        for (entry, u) in SYMMETRIC[c].into_iter().zip(u) {
+            // Fused wherever it runs, so that it comes out the same.
+            sum[c] = simd.mul_add_f32s(block[entry], u, sum[c]);
+        }
     }
 }
 

@@ -150,9 +150,20 @@ impl Bundle {
     }
 
     fn solve(&mut self, r: &Rows<f32>) {
-        for (i, out) in self.solution.iter_mut().enumerate() {
-            for (c, out) in out.iter_mut().enumerate() {
-                *out = load(r, self.along_x, self.first, i, c);
+        if self.along_x {
+            for lane in 0..LANES.min(r.ny - self.first) {
+                let lines: [&[f32]; 3] = r.lines((self.first + lane) as isize, 0, 0);
+                let [x, y, z] = lines;
+                for (((out, x), y), z) in self.solution.iter_mut().zip(x).zip(y).zip(z) {
+                    (out[0][lane], out[1][lane], out[2][lane]) = (*x, *y, *z);
+                }
+            }
+        } else {
+            for (i, out) in self.solution.iter_mut().enumerate() {
+                let lines: [&[f32]; 3] = r.lines(i as isize, 0, 0);
+                for (out, line) in out.iter_mut().zip(lines) {
+                    out.copy_from_slice(&line[self.first..self.first + LANES]);
+                }
             }
         }
         Arch::new().dispatch(Solve {
@@ -338,6 +349,6 @@ fn at<S: Simd>(lanes: &[Lanes], i: usize, part: usize) -> S::f32s {
 /// One row of a matrix times a vector.
 #[inline(always)]
 fn times<S: Simd>(simd: S, row: [S::f32s; 3], y: [S::f32s; 3]) -> S::f32s {
-    let ab = simd.add_f32s(simd.mul_f32s(row[0], y[0]), simd.mul_f32s(row[1], y[1]));
-    simd.add_f32s(ab, simd.mul_f32s(row[2], y[2]))
+    let ab = simd.mul_add_f32s(row[1], y[1], simd.mul_f32s(row[0], y[0]));
+    simd.mul_add_f32s(row[2], y[2], ab)
 }

@@ -109,7 +109,12 @@ pub struct Colliders {
     tree: MeshTree,
     /// By triangle: which of its corners and edges (those that begin at its corners) are its own.
     owned: Vec<[(bool, bool); 3]>,
+    /// By triangle: its own plane, from either side, and the upright ones on its sides.
+    planes: Vec<[Plane; 5]>,
 }
+
+/// A point of a plane and the way out of it.
+pub type Plane = (DVec3, DVec3);
 
 impl Colliders {
     /// Colliders of these shapes.
@@ -125,7 +130,15 @@ impl Colliders {
             })
         });
         let owned = owned.collect();
+        let planes = mesh.triangles.iter().map(|t| {
+            let t = t.map(|i| mesh.corners[i as usize]);
+            let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+            let side = |i: usize| (t[(i + 1) % 3] - t[i]).cross(normal);
+            let ways = [normal, -normal, side(0), side(1), side(2)];
+            std::array::from_fn(|i| (t[i.saturating_sub(2)], ways[i].normalize_or_zero()))
+        });
         Colliders {
+            planes: planes.collect(),
             tree: MeshTree::new(&mesh),
             exact,
             mesh,
@@ -141,6 +154,12 @@ impl Colliders {
     /// Calls `meet` with every triangle of the mesh whose box meets `bounds`.
     pub fn visit(&self, bounds: &Box3, meet: impl FnMut(u32)) {
         self.tree.visit(bounds, meet);
+    }
+
+    /// Planes beyond any of which (by a margin) nothing is near a triangle: its own, from either side, and
+    /// the upright ones on its sides.
+    pub fn planes(&self, triangle: u32) -> &[Plane; 5] {
+        &self.planes[triangle as usize]
     }
 
     /// Corners and edges of the mesh that belong to a triangle, so that each is met once.

@@ -175,16 +175,11 @@ fn is_beside(
     motion: Motion,
     margin: f64,
 ) -> bool {
-    let t = colliders.mesh.triangles[triangle as usize].map(|i| colliders.mesh.corners[i as usize]);
-    let normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    let outside = |at: DVec3, way: DVec3| {
-        let way = way.normalize_or_zero();
+    let planes = colliders.planes(triangle);
+    planes.iter().any(|(at, way)| {
         cell.iter().all(|i| {
             let i = *i as usize;
-            (motion.from[i] - at).dot(way) > margin && (motion.to[i] - at).dot(way) > margin
+            (motion.from[i] - *at).dot(*way) > margin && (motion.to[i] - *at).dot(*way) > margin
         })
-    };
-    outside(t[0], normal)
-        || outside(t[0], -normal)
-        || (0..3).any(|i| outside(t[i], (t[(i + 1) % 3] - t[i]).cross(normal)))
+    })
 }
