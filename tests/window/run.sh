@@ -60,7 +60,7 @@ cat > one.ron <<'E2'
 E2
 watch 240 one_drop one.ron || fail "the first script did not end well"
 [ "$(value 'Record(' problem)" = false ] || fail "recording began with a problem"
-[ "$(value Undo edits)" = 6 ] || fail "three edits and three undone make $(value Undo edits)"
+[ "$(value Screenshot edits)" = 6 ] || fail "three edits and three undone make $(value Screenshot edits)"
 "$program" check painted.ron > /dev/null || fail "what was saved is not right"
 grep -q "Strokes" painted.ron || fail "no strokes in what was saved"
 grep -q "//" painted.ron || fail "no comments in what was saved"
@@ -84,30 +84,30 @@ grep "act=Wait(3.0)" acts.log
 
 echo "= keys and mouse"
 cat > three.ron <<'E2'
-[ Pause, GoTo(20), Arrive, Log("ready"), Wait(14), Pause, Wait(1), Quit ]
+[ Pause, GoTo(20), Arrive, Log("ready"), Wait(22), Pause, Wait(1), Quit ]
 E2
 watch 240 one_drop three.ron & window=$!
 for _ in $(seq 100); do grep -qs "^ready" acts.log && break; sleep 0.3; done
 id="$(xdotool search --name '^dyelapse$' | head -1)"
 [ -n "$id" ] || fail "no window"
 xdotool windowfocus "$id" 2>/dev/null || true
-key() { xdotool key --window "$id" "$1"; sleep 0.4; }
+key() { xdotool key "$1"; sleep 0.8; }
 # Paint on the flat cloth: to the right of the parameters, left of the draped one.
-xdotool mousemove --window "$id" 520 330; sleep 0.5
+xdotool mousemove 520 330; sleep 0.8
 key b
-xdotool mousedown 1; sleep 0.3
-for x in 530 545 560 580; do xdotool mousemove --window "$id" "$x" 345; sleep 0.15; done
-xdotool mouseup 1; sleep 0.8
+xdotool mousedown 1; sleep 0.5
+for x in 530 545 560 580; do xdotool mousemove "$x" 345; sleep 0.4; done
+xdotool mouseup 1; sleep 2
 key ctrl+z
 key v
 # Turn the draped cloth.
-xdotool mousemove --window "$id" 1000 330 mousedown 1; sleep 0.2
-for x in 1020 1060 1100; do xdotool mousemove --window "$id" "$x" 350; sleep 0.15; done
+xdotool mousemove 1000 330; sleep 0.5; xdotool mousedown 1; sleep 0.4
+for x in 1020 1060 1100; do xdotool mousemove "$x" 350; sleep 0.3; done
 xdotool mouseup 1; sleep 0.3
 key space
 wait "$window" || fail "the third script did not end well"
-[ "$(value 'Wait(14.0)' edits)" = 2 ] || fail "a stroke and its undoing make $(value 'Wait(14.0)' edits) edits"
-[ "$(value 'Wait(14.0)' step)" -gt 20 ] || fail "the space bar did not play"
+[ "$(value 'Wait(22.0)' edits)" = 2 ] || fail "a stroke and its undoing make $(value 'Wait(22.0)' edits) edits"
+[ "$(value 'Wait(22.0)' step)" -gt 20 ] || fail "the space bar did not play"
 
 echo "= a file that changes is opened again, a mistake in it is told and the cloth stays"
 cp painted.ron mine.ron
