@@ -43,7 +43,11 @@ impl DrapeSpec {
     }
 
     /// Refuses cells so long and thin that diagonals could not stand for shear.
-    pub(in crate::drape) fn check_cells(&self, size: (f64, f64), at: &Checker) -> Result<(), Problem> {
+    pub(in crate::drape) fn check_cells(
+        &self,
+        size: (f64, f64),
+        at: &Checker,
+    ) -> Result<(), Problem> {
         let (dx, dy) = (
             size.0 / (self.particles.0 - 1) as f64,
             size.1 / (self.particles.1 - 1) as f64,
