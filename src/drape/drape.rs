@@ -1,7 +1,7 @@
 //! The cloth in motion: what it is made of, where it is, and how it gets on.
 //!
-//! A step has three parts. The integrator proposes a move for every particle ([`implicit`](super::implicit)
-//! or [`explicit`](super::explicit)); the filter shortens or turns the moves of those that would pass through
+//! A step has three parts. The integrator proposes a move for every particle (`implicit`
+//! or [`explicit`]); the filter shortens or turns the moves of those that would pass through
 //! something ([`filter`](super::collide::filter)); the state takes what is left.
 
 mod edit;

@@ -26,7 +26,7 @@ pub struct Arc {
     pub second: f64,
 }
 
-/// (−1)ᵏ/(2k+1)!: S(s) = Σ SERIES[k]·sᵏ. At s = π², the furthest that is asked for, the first term
+/// (−1)ᵏ/(2k+1)!: S(s) = Σ `SERIES[k]`·sᵏ. At s = π², the furthest that is asked for, the first term
 /// left out is below 10⁻¹³.
 const SERIES: [f64; 14] = series();
 

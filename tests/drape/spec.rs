@@ -145,7 +145,7 @@ proptest! {
         height in -1.0..1e4_f64,
         implicit in any::<bool>(),
     ) {
-        let mut spec: DrapeSpec = parse("(start: Flat(centre_m: (0, 1, 0)), particles: (7, 7))").expect("it is a drape");
+        let mut spec: DrapeSpec = parse("(start: Flat(centre_m: (0, 1, 0)), particles: (5, 5))").expect("it is a drape");
         spec.size_m = Some((size, size));
         spec.start = Start::Flat { centre_m: (0.0, height, 0.0), turn: 10.0 };
         spec.material = Material::Measured(MaterialSpec {
