@@ -9,7 +9,7 @@
 //! | [`FreeDye`] | c, what rounding left over | room for the next step |
 //! | [`BoundDye`], [`Ledger`] | all | |
 //! | [`Supplies`] | which events are done, since when what is kept is kept | cells, holds, baths |
-//! | [`Leap`](crate::diffusion::Leap) | both ends of the leap with their rates, or one where the process is at its end; kept cells, baths | conductances, isotherm |
+//! | [`Leap`] | both ends of the leap with their rates, or one where the process is at its end; kept cells, baths | conductances, isotherm |
 //! | [`Batik`] | which actions have begun, fixed dyes, the bath's dye | wax, exchange, colours |
 //!
 //! Whether someone has changed the dye since the solver last saw it is kept as well: the solver begins

@@ -75,7 +75,7 @@ fn zoomed_and_moved(
     let mut view = watch.tools.flat;
     if let Some(at) = response.hover_pos() {
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
-        let factor = (scroll * 0.004).exp() * pinch;
+        let factor = libm::expf(scroll * 0.004) * pinch;
         if factor != 1.0 {
             view = view.zoomed(factor, at, space, cells);
         }
@@ -226,7 +226,7 @@ fn ruler(painter: &egui::Painter, space: Rect, mm: f64) {
     if !mm.is_finite() || mm <= 0.0 {
         return;
     }
-    let size = 10f64.powf(mm.log10().floor());
+    let size = libm::pow(10.0, libm::log10(mm).floor());
     let length = [5.0, 2.0, 1.0]
         .into_iter()
         .map(|n| n * size)
@@ -309,14 +309,13 @@ pub fn draped(ui: &mut Ui, space: Rect, watch: &mut Watch, view: &mut View3d, te
     if let Some(texture) = textures.studio {
         painter.image(texture, space, WHOLE, Color32::WHITE);
     }
-    if let Some(at) = response.hover_pos() {
+    if response.hovered() {
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta.y, input.zoom_delta()));
-        let factor = (scroll * 0.003).exp() * pinch;
+        let factor = libm::expf(scroll * 0.003) * pinch;
         if factor != 1.0 {
             view.eye = view.eye.nearer(f64::from(factor));
             view.moved_by_hand = true;
         }
-        let _ = at;
     }
     let looks = watch.tools.tool == Tool::Look || watch.tools.tool == Tool::Cut;
     let drag = response.drag_delta();
@@ -440,7 +439,7 @@ pub fn also_in_scenario(
 /// Presses a crease into the cloth, and into the scenario.
 pub fn crease(watch: &mut Watch, from: Place, to: Place) {
     let (from, to) = (rounded(from), rounded(to));
-    if (from.0 - to.0).hypot(from.1 - to.1) < 0.01 {
+    if libm::hypot(from.0 - to.0, from.1 - to.1) < 0.01 {
         return;
     }
     let fold = if watch.tools.valley {
@@ -479,7 +478,7 @@ pub fn pin(watch: &mut Watch, hit: Hit) {
         if takes_off { "take a pin off" } else { "pin" },
         |spec| {
             let close = |pin: &PinSpec| match pin.at {
-                Hold::Point(u, v) => (u - place.0).hypot(v - place.1) < 0.02,
+                Hold::Point(u, v) => libm::hypot(u - place.0, v - place.1) < 0.02,
                 _ => false,
             };
             if takes_off {
@@ -517,7 +516,7 @@ pub fn on_cloth(watch: &Watch, (u, v): Place) -> Option<DVec3> {
     let front = &watch.moment.as_ref()?.front;
     let nearest = |i: &usize| {
         let uv = front.uv[*i];
-        (uv.x - u).powi(2) + (uv.y - v).powi(2)
+        uv.distance_squared(bevy::math::DVec2::new(u, v))
     };
     let all = 0..front.positions.len();
     let best = all.min_by(|a, b| nearest(a).total_cmp(&nearest(b)))?;

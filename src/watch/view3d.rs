@@ -8,6 +8,7 @@ use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, T
 use bevy_egui::{EguiTextureHandle, EguiUserTextures};
 
 use super::worker::{Seen, Shown};
+use crate::drape::hand::first_hit;
 use crate::scenario::{CameraSpec, ViewSpec};
 use crate::studio::camera::{Opening, Subject};
 use crate::studio::cloth::{self, ClothAssets, ClothSide};
@@ -119,40 +120,19 @@ pub struct Hit {
     pub is_back: bool,
 }
 
-/// Where a ray meets the cloth (Möller and Trumbore, *Fast, Minimum Storage Ray–Triangle Intersection*,
-/// 1997).
+/// Where a ray meets the cloth.
 pub fn hit(front: &Fine, from: DVec3, way: DVec3) -> Option<Hit> {
-    let mut nearest: Option<(f64, Hit)> = None;
-    for t in &front.triangles {
-        let [i, j, k] = t.map(|i| i as usize);
-        let (a, b, c) = (front.positions[i], front.positions[j], front.positions[k]);
-        let (ab, ac) = (b - a, c - a);
-        let p = way.cross(ac);
-        let det = ab.dot(p);
-        if det.abs() < 1e-18 {
-            continue;
-        }
-        let s = from - a;
-        let u = s.dot(p) / det;
-        let q = s.cross(ab);
-        let v = way.dot(q) / det;
-        let far = ac.dot(q) / det;
-        if u < 0.0 || v < 0.0 || u + v > 1.0 || far <= 0.0 {
-            continue;
-        }
-        if nearest.is_none_or(|(nearest, _)| far < nearest) {
-            let uv = (1.0 - u - v) * front.uv[i] + u * front.uv[j] + v * front.uv[k];
-            nearest = Some((
-                far,
-                Hit {
-                    uv: (uv.x, uv.y),
-                    place: from + far * way,
-                    is_back: det < 0.0,
-                },
-            ));
-        }
+    let hit = first_hit(&front.positions, &front.triangles, from, way)?;
+    let corners = front.triangles[hit.triangle].map(|i| i as usize);
+    let mut uv = bevy::math::DVec2::ZERO;
+    for (share, corner) in hit.shares.into_iter().zip(corners) {
+        uv += share * front.uv[corner];
     }
-    nearest.map(|(_, hit)| hit)
+    Some(Hit {
+        uv: (uv.x, uv.y),
+        place: from + hit.distance * way,
+        is_back: hit.from_back,
+    })
 }
 
 fn target(size: UVec2) -> Image {
