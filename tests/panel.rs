@@ -1,6 +1,6 @@
-#![cfg(feature = "viewer")]
 //! The panel of the window, shown without a window: what it shows changes nothing, and what it changes can
 //! always be dyed.
+#![cfg(feature = "viewer")]
 
 use bevy_egui::egui::{
     Context, Event, FontId, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2, vec2,

@@ -18,7 +18,7 @@ pub fn run(arguments: &Watch) -> ExitCode {
     };
     match run(&options) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(why) => failed(&why, !matches!(why, NoWindow::Thread(_))),
+        Err(why) => failed(&why, !matches!(why, NoWindow::Thread(_) | NoWindow::Broken)),
     }
 }
 

@@ -1,10 +1,12 @@
 //! The draped cloth of one moment as a file for modelling programs.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use bevy::app::App;
 
 use super::RecordError;
+use super::folder::write_whole;
 use crate::cloth::Cloth;
 use crate::memory::{self, Use};
 use crate::scenario::units::MOST_STEPS;
@@ -102,6 +104,9 @@ pub fn export(
         },
     ];
     let path = options.out.clone();
-    let written = to_glb(&scenario.title, &sides).and_then(|glb| std::fs::write(&path, glb));
-    written.map_err(|why| RecordError::Write { path, why })
+    let glb = to_glb(&scenario.title, &sides).map_err(|why| RecordError::Write {
+        path: path.clone(),
+        why,
+    })?;
+    write_whole(&path, |file| file.write_all(&glb))
 }

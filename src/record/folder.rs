@@ -150,7 +150,7 @@ impl Folder {
 
 /// Writes a file, and the folders that lead to it: under another name first, and under its own when
 /// it is whole.
-pub(super) fn write_whole(
+pub(crate) fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), RecordError> {

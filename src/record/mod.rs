@@ -34,9 +34,11 @@ use crate::memory::{self, Use};
 use crate::scenario::check::Checker;
 use crate::scenario::{Draping, Experiment, LARGEST_SCALE, Origin};
 use crate::schedule::advance_to;
-use crate::studio::hung::HungError;
+use crate::studio::hung::{Hung, HungError};
 use crate::texture::Scale;
 use crate::{DyeingPlugins, look, prepare};
+pub(crate) use folder::write_whole;
+
 use draped::Draped;
 use folder::Folder;
 use recorder::Seen;
@@ -148,6 +150,8 @@ pub fn record(
         view.check(&Checker::root().field("view"))
             .map_err(HungError::from)?;
         Draped::check()?;
+        // What cannot be draped is told before anything is cleared away.
+        Hung::new(scenario, options.drape.as_ref())?;
     }
     let folder = Folder::claim(&options.out, options.force, &manifest)?;
     let recorder = Recorder::start(experiment, folder.clone(), manifest)?;
@@ -164,6 +168,7 @@ pub fn record(
         maps::write(&folder, app.world().resource(), scenario, scale as usize)?;
     }
     let mut draped = None;
+    let mut broken = None;
     let mut complete = true;
     if options.view == View::Draped {
         let drape = options.drape.as_ref();
@@ -183,11 +188,17 @@ pub fn record(
             look(app.world_mut());
             let share = stop.step as f64 / plan.steps.max(1) as f64;
             let seen = match draped.see(&mut app, share, &mut || go_on(stop.step)) {
+                Ok(seen) => seen,
                 Err(RecordError::Stopped) => {
                     complete = false;
                     break;
                 }
-                seen => seen?,
+                Err(why) => {
+                    // What is there by now is told of.
+                    complete = false;
+                    broken = Some(why);
+                    break;
+                }
             };
             app.world_mut().insert_resource(Seen(seen));
         }
@@ -208,6 +219,9 @@ pub fn record(
         return Err(RecordError::Lost);
     };
     let manifest = recorder.finish(complete)?;
+    if let Some(why) = broken {
+        return Err(why);
+    }
     if options.video {
         video::make(&folder, &manifest)?;
     }

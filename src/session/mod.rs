@@ -42,10 +42,10 @@ use crate::diffusion::{Conductances, Leap, Steps};
 use crate::look;
 use crate::memory::{self, Use};
 use crate::pattern::Stroke;
-use crate::scenario::{Beside, Experiment, Images, Scenario, ScenarioError};
+use crate::scenario::{Beside, Experiment, Images, Origin, Scenario, ScenarioError};
 use crate::schedule::{Prepare, ProcessClock, TheExperiment};
 use crate::supply;
-use crate::texture::{change_look, darkest_at};
+use crate::texture::{OtherSide, change_look, darkest_at, see_both_sides};
 use course::Course;
 use effect::{Effect, effect, only_adds_doses_at};
 use history::History;
@@ -90,6 +90,11 @@ impl Session {
             text: save::save(self.scenario()),
             ..Experiment::clone(&self.experiment)
         }
+    }
+
+    /// The scenario lies somewhere else from now on, and its pictures beside it.
+    pub fn lies_at(&mut self, origin: Origin) {
+        Arc::make_mut(&mut self.experiment).origin = origin;
     }
 
     /// Undo and redo.
@@ -304,6 +309,10 @@ impl Session {
         world.remove_resource::<Batik>();
         world.insert_resource(TheExperiment(self.experiment.clone()));
         world.run_schedule(Prepare);
+        if world.contains_resource::<OtherSide>() {
+            // The cloth may be larger than the one whose back was drawn.
+            see_both_sides(world);
+        }
         self.timeline.note(world);
     }
 }

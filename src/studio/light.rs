@@ -68,7 +68,9 @@ pub fn spawn(world: &mut World, view: &ViewSpec, subject: &Subject, quality: Qua
         Quality::Software => (1, 1024),
     };
     world.insert_resource(DirectionalLightShadowMap { size });
-    let far = 20.0 * subject.radius as f32;
+    // As far as the narrowest camera may stand.
+    let narrow = 1.0 / libm::tan(0.5 * view.field_of_view.to_radians());
+    let far = (20.0 * subject.radius * narrow.max(1.0)) as f32;
     for way in lamp_ways(view.light, parts) {
         world.spawn((
             Lamp,

@@ -134,7 +134,7 @@ fn tools(ui: &mut Ui, watch: &mut Watch) {
             .on_hover_text(tip)
             .clicked()
         {
-            watch.tools.tool = tool;
+            watch.take_tool(tool);
         }
     }
 }
@@ -334,7 +334,7 @@ fn timeline(ui: &mut Ui, watch: &mut Watch, step: u64, total: u64) {
 /// How fast it plays: from one step a second to the whole process.
 fn pace(ui: &mut Ui, watch: &mut Watch, total: u64) {
     let most = total.max(2) as f64;
-    let old = watch.tools_pace(total);
+    let old = watch.speed(total);
     let mut speed = old;
     ui.label("speed");
     ui.add(

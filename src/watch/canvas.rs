@@ -122,7 +122,7 @@ fn use_flat(ui: &Ui, response: &Response, watch: &mut Watch, space: Rect, cells:
                     watch.worker.order(Order::Cut(cut));
                 }
             }
-            if response.drag_stopped() {
+            if response.drag_stopped_by(PointerButton::Primary) {
                 watch.tools.from = None;
             }
         }
@@ -132,15 +132,14 @@ fn use_flat(ui: &Ui, response: &Response, watch: &mut Watch, space: Rect, cells:
 
 /// Paints: collects the path while the button is down, and orders the stroke when it is let go.
 fn paint_on(response: &Response, watch: &mut Watch, place: Option<Place>, cells: (usize, usize)) {
-    let primary = response.dragged_by(PointerButton::Primary)
-        || response.clicked()
-        || response.is_pointer_button_down_on();
+    let down = response.ctx.input(|input| input.pointer.primary_down());
+    let primary = response.clicked() || (down && response.is_pointer_button_down_on());
     if let Some(place) = place.filter(|_| primary)
         && watch.tools.path.last() != Some(&place)
     {
         watch.tools.path.push(place);
     }
-    let ends = response.drag_stopped() || response.clicked();
+    let ends = response.drag_stopped_by(PointerButton::Primary) || response.clicked();
     if ends && !watch.tools.path.is_empty() {
         let path = std::mem::take(&mut watch.tools.path);
         let brush = watch.tools.brush;
@@ -375,7 +374,8 @@ fn use_draped(ui: &Ui, response: &Response, watch: &mut Watch, view: &View3d, sp
                 let along = (place - from).dot(out) / way.dot(out);
                 watch.hanger.act(Deed::Hold(uv, from + along * way));
             }
-            if response.drag_stopped() && watch.tools.held.take().is_some() {
+            if response.drag_stopped_by(PointerButton::Primary) && watch.tools.held.take().is_some()
+            {
                 watch.hanger.act(Deed::LetGo);
             }
         }
@@ -397,7 +397,7 @@ fn use_draped(ui: &Ui, response: &Response, watch: &mut Watch, view: &View3d, sp
             {
                 watch.tools.to = Some(hit.uv);
             }
-            if response.drag_stopped()
+            if response.drag_stopped_by(PointerButton::Primary)
                 && let (Some(from), Some(to)) = (watch.tools.from.take(), watch.tools.to.take())
             {
                 crease(watch, from, to);
@@ -423,6 +423,10 @@ pub fn also_in_scenario(
     label: &str,
     change: impl FnOnce(&mut crate::drape::spec::DrapeSpec),
 ) {
+    if watch.must_wait() {
+        watch.tell("wait until the last change is done");
+        return;
+    }
     let Ok(mut spec) = spec_of(&watch.edit, None) else {
         return;
     };
@@ -469,7 +473,7 @@ pub fn pin(watch: &mut Watch, hit: Hit) {
         moment
             .pinned
             .iter()
-            .any(|pinned| pinned.distance(hit.place) < 0.015)
+            .any(|pinned| pinned.distance(hit.place) < super::hanger::NEAR_PIN)
     };
     let takes_off = watch.moment.as_ref().is_some_and(near);
     watch.hanger.act(Deed::Pin(place));
@@ -487,7 +491,8 @@ pub fn pin(watch: &mut Watch, hit: Hit) {
                 spec.pins.push(PinSpec {
                     at: Hold::Point(place.0, place.1),
                     radius_m: 0.002,
-                    from_s: (100.0 * time).round() / 100.0,
+                    // While it settles: a recording has it from the first frame on.
+                    from_s: ((100.0 * time).round() / 100.0).min(spec.settle_s),
                     until_s: None,
                     path: Vec::new(),
                 });

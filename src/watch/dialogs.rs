@@ -8,7 +8,7 @@ use super::files::{Dropped, Wanted, kind_of};
 use super::keys::KEYS;
 use super::panel;
 use super::recording::{Ended, Running};
-use super::state::Watch;
+use super::state::{Then, Watch};
 use super::worker::Order;
 use crate::pattern::{Fit, Pattern};
 use crate::record::{Options, View, ffmpeg_is_there};
@@ -106,8 +106,10 @@ impl Watch {
         }
     }
 
-    fn go(&mut self, leaving: Leaving) {
+    /// Leaves this scenario.
+    pub fn go(&mut self, leaving: Leaving) {
         self.leaving = None;
+        self.changed_on_disk = false;
         match leaving {
             Leaving::Open(name) => self.open(&name),
             Leaving::Close => {
@@ -122,6 +124,10 @@ impl Watch {
     /// # Errors
     /// What stands in the way.
     pub fn start_recording(&mut self, form: &RecordForm) -> Result<(), String> {
+        if !self.is_in_step() {
+            self.then.push(Then::Record(form.clone()));
+            return Ok(());
+        }
         let experiment = self.as_saved()?;
         let options = Options {
             out: form.folder.clone().into(),
@@ -266,22 +272,26 @@ fn leave(ctx: &egui::Context, watch: &mut Watch) {
     };
     egui::Modal::new("leave".into()).show(ctx, |ui| {
         ui.set_width(320.0);
-        ui.heading("Leave without saving?");
-        ui.label(format!("{} has changes that are not saved.", watch.name));
+        if watch.changed_on_disk {
+            ui.heading("The file has changed on disk");
+            ui.label("Open it again, and lose the changes that were made here? Save them elsewhere to keep both.");
+        } else {
+            ui.heading("Leave without saving?");
+            ui.label(format!("{} has changes that are not saved.", watch.name));
+        }
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            if ui.button("Save").clicked() {
+            if !watch.changed_on_disk && ui.button("Save").clicked() {
                 watch.leaving = None;
+                watch.after_save = Some(leaving.clone());
                 watch.save();
-                if !watch.unsaved {
-                    watch.go(leaving.clone());
-                }
             }
             if ui.button("Leave them").clicked() {
                 watch.go(leaving.clone());
             }
             if ui.button("Stay").clicked() {
                 watch.leaving = None;
+                watch.changed_on_disk = false;
             }
         });
     });

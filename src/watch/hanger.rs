@@ -9,6 +9,7 @@ use bevy::math::{DVec2, DVec3};
 
 use super::worker::on_own_cores;
 use crate::drape::hand::Hand;
+use crate::drape::spec::Hold;
 use crate::scenario::Scenario;
 use crate::studio::camera::Subject;
 use crate::studio::fine::Fine;
@@ -42,6 +43,8 @@ pub enum Deed {
 pub struct Moment {
     /// Counts how often it was hung anew.
     pub hung: u64,
+    /// Whether it has settled: what is around it is then seen as in a recording.
+    pub settled: bool,
     /// Its front.
     pub front: Arc<Fine>,
     /// What stands around it.
@@ -62,6 +65,7 @@ pub struct Moment {
 pub struct Hanger {
     deeds: Sender<Deed>,
     moment: Arc<Mutex<Option<Moment>>>,
+    told: Arc<Mutex<Option<String>>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -74,12 +78,15 @@ impl Hanger {
         let (deeds, given) = channel();
         let moment = Arc::new(Mutex::new(None));
         let there = moment.clone();
+        let told = Arc::new(Mutex::new(None));
+        let tell = told.clone();
         let thread = std::thread::Builder::new()
             .name("drape".into())
-            .spawn(move || on_own_cores(4, move || run(&given, &there, &wake)))?;
+            .spawn(move || on_own_cores(4, move || run(&given, &there, &tell, &wake)))?;
         Ok(Hanger {
             deeds,
             moment,
+            told,
             thread: Some(thread),
         })
     }
@@ -92,6 +99,16 @@ impl Hanger {
     /// Takes what is new.
     pub fn take(&self) -> Option<Moment> {
         self.moment.lock().ok()?.take()
+    }
+
+    /// Why the cloth could not be hung, once.
+    pub fn problem(&self) -> Option<String> {
+        self.told.lock().ok()?.take()
+    }
+
+    /// Whether the thread has ended by itself, which it never should.
+    pub fn has_died(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 }
 
@@ -110,6 +127,13 @@ const REST: f64 = 4e-3;
 /// Pieces of time for which it must be.
 const CALM: u32 = 20;
 
+/// A click nearer to a pin than this takes it off, m.
+pub const NEAR_PIN: f64 = 0.015;
+
+fn drape_positions(hung: &Hung) -> &[DVec3] {
+    hung.drape.positions()
+}
+
 /// Cloth on its hanger.
 struct Hanging {
     hung: Hung,
@@ -123,12 +147,20 @@ struct Hanging {
     /// Whether it goes on when it need not.
     moves: bool,
     calm: u32,
+    /// Whether it has settled, and is seen so.
+    settled: bool,
     problem: Option<String>,
 }
 
-fn run(deeds: &Receiver<Deed>, there: &Mutex<Option<Moment>>, wake: &dyn Fn()) {
+fn run(
+    deeds: &Receiver<Deed>,
+    there: &Mutex<Option<Moment>>,
+    told: &Mutex<Option<String>>,
+    wake: &dyn Fn(),
+) {
     let mut hanging: Option<Hanging> = None;
     let mut hung = 0;
+    let mut moves = false;
     loop {
         let busy = hanging.as_ref().is_some_and(Hanging::is_busy);
         let first = match busy {
@@ -144,21 +176,28 @@ fn run(deeds: &Receiver<Deed>, there: &Mutex<Option<Moment>>, wake: &dyn Fn()) {
                 (Deed::Quit, _) => return,
                 (Deed::Hang(scenario), _) => {
                     hung += 1;
-                    let moves = hanging.as_ref().is_some_and(|hanging| hanging.moves);
                     let (new, problem) = match Hanging::new(&scenario, hung, moves) {
                         Ok(new) => (Some(new), None),
                         Err(why) => (hanging.take(), Some(why)),
                     };
                     hanging = new;
+                    if let Ok(mut told) = told.lock() {
+                        told.clone_from(&problem);
+                    }
                     if let Some(hanging) = &mut hanging {
                         hanging.problem = problem;
                     }
                 }
-                (deed, Some(hanging)) => hanging.do_to(deed),
+                (Deed::Move(on), None) => moves = on,
+                (deed, Some(hanging)) => {
+                    hanging.do_to(deed);
+                    moves = hanging.moves;
+                }
                 (_, None) => {}
             }
         }
         let Some(hanging) = &mut hanging else {
+            wake();
             continue;
         };
         let began = Instant::now();
@@ -183,15 +222,22 @@ fn run(deeds: &Receiver<Deed>, there: &Mutex<Option<Moment>>, wake: &dyn Fn()) {
 impl Hanging {
     fn new(scenario: &Scenario, number: u64, moves: bool) -> Result<Self, String> {
         let hung = Hung::new(scenario, None).map_err(|why| why.to_string())?;
+        // Points that the scenario pins can be taken off as those pinned by hand.
+        let pins = hung.spec.pins.iter().zip(&hung.drape.pins);
+        let pinned = pins
+            .filter(|(pin, held)| matches!(pin.at, Hold::Point(..)) && held.particles.len() == 1)
+            .flat_map(|(_, held)| held.particles.clone())
+            .collect();
         Ok(Hanging {
             number,
             furniture: Arc::new(Furniture::of(&hung.spec, &hung.drape)),
             subject: Arc::new(hung.subject()),
             hung,
             held: None,
-            pinned: Vec::new(),
+            pinned,
             moves,
             calm: 0,
+            settled: false,
             problem: None,
         })
     }
@@ -205,8 +251,16 @@ impl Hanging {
     }
 
     fn go_on(&mut self) {
+        let before = self.hung.drape.time;
         if let Err(why) = self.hung.drape.advance(1.0 / PIECES_A_SECOND) {
             self.problem = Some(why.to_string());
+        }
+        let settles_at = self.hung.spec.settle_s;
+        if before < settles_at && self.hung.drape.time >= settles_at {
+            // Seen from now on as a recording sees it.
+            self.furniture = Arc::new(Furniture::of(&self.hung.spec, &self.hung.drape));
+            self.subject = Arc::new(self.hung.subject());
+            self.settled = true;
         }
         let fastest = self.hung.drape.velocities().iter();
         let fastest = fastest.map(|v| v.length_squared()).fold(0.0, f64::max);
@@ -240,12 +294,12 @@ impl Hanging {
             }
             Deed::Pin(place) => {
                 let particle = self.nearest(place);
+                let x = drape_positions(&self.hung);
+                let near = |pinned: &usize| x[*pinned].distance(x[particle]) < NEAR_PIN;
+                let at = self.pinned.iter().position(near);
                 let drape = &mut self.hung.drape;
-                match self.pinned.iter().position(|pinned| *pinned == particle) {
-                    Some(at) => {
-                        self.pinned.remove(at);
-                        drape.unpin(particle);
-                    }
+                match at {
+                    Some(at) => drape.unpin(self.pinned.remove(at)),
                     None => {
                         self.pinned.push(particle);
                         drape.pin(particle);
@@ -268,6 +322,7 @@ impl Hanging {
         let positions = self.hung.drape.positions();
         Moment {
             hung: self.number,
+            settled: self.settled,
             front: Arc::new(self.hung.front()),
             furniture: self.furniture.clone(),
             subject: self.subject.clone(),

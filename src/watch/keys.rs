@@ -38,7 +38,7 @@ pub const KEYS: [(&str, &str); 34] = [
     ("C", "crease"),
     ("X", "cross-section"),
     ("right drag", "turn, with any tool"),
-    ("middle drag", "move, with any tool"),
+    ("middle drag", "move, with any tool (or Shift drag)"),
     ("Ctrl Z", "undo"),
     ("Ctrl Y", "redo"),
     ("Ctrl O", "open"),
@@ -51,23 +51,6 @@ pub const KEYS: [(&str, &str); 34] = [
 
 /// How much faster or slower a key makes it.
 const FASTER: f64 = 1.5;
-
-impl Watch {
-    /// Steps a second that it plays with.
-    pub fn tools_pace(&self, total: u64) -> f64 {
-        match self.pace {
-            Some(Pace::PerSecond(speed)) => speed.clamp(1.0, total.max(2) as f64),
-            Some(Pace::PerFrame(steps)) => (60.0 * steps as f64).clamp(1.0, total.max(2) as f64),
-            None => (total as f64 / 20.0).max(1.0),
-        }
-    }
-
-    /// Plays at another speed.
-    pub fn set_pace(&mut self, pace: Pace) {
-        self.pace = Some(pace);
-        self.worker.order(Order::Pace(pace));
-    }
-}
 
 /// Does what the keys that were pressed ask for.
 pub fn act(ctx: &egui::Context, watch: &mut Watch, view: &mut View3d) {
@@ -109,7 +92,7 @@ pub fn act(ctx: &egui::Context, watch: &mut Watch, view: &mut View3d) {
         .zip([Key::V, Key::B, Key::H, Key::N, Key::C, Key::X])
     {
         if press(Modifiers::NONE, key) {
-            watch.tools.tool = tool;
+            watch.take_tool(tool);
         }
     }
     for (key, by) in [(Key::OpenBracket, 1.0 / 1.2), (Key::CloseBracket, 1.2)] {
@@ -127,8 +110,7 @@ pub fn act(ctx: &egui::Context, watch: &mut Watch, view: &mut View3d) {
         watch.open = Open::default();
         watch.leaving = None;
         watch.problem = None;
-        watch.tools.tool = Tool::Look;
-        watch.tools.path.clear();
+        watch.take_tool(Tool::Look);
     }
 }
 
@@ -136,7 +118,7 @@ fn time(press: &impl Fn(Modifiers, Key) -> bool, watch: &mut Watch) {
     let total = watch.edit.process.steps();
     let seen = watch.seen.as_ref();
     let (playing, target) = seen.map_or((false, 0), |seen| (seen.playing, seen.target));
-    let speed = watch.tools_pace(total);
+    let speed = watch.speed(total);
     if press(Modifiers::NONE, Key::Space) {
         watch.worker.order(Order::Play(!playing));
     }

@@ -89,6 +89,9 @@ fn side(root: &mut Ui, watch: &mut Watch) {
                     .on_hover_text("Click the crossings, choose a weave, load a draft");
             });
             ui.separator();
+            if watch.must_wait() {
+                ui.disable();
+            }
             let change = match watch.weaves {
                 true => panel::weave(ui, &mut watch.edit, &mut watch.panel),
                 false => panel::parameters(ui, &mut watch.edit, &mut watch.panel),

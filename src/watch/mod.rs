@@ -94,6 +94,9 @@ pub enum NoWindow {
     /// The script cannot be followed.
     #[error("{0}")]
     Script(String),
+    /// The window broke off.
+    #[error("the window broke off: the graphics driver may have failed")]
+    Broken,
     /// The system gives no threads.
     #[error("no thread for the process: {0}")]
     Thread(#[from] std::io::Error),
@@ -162,8 +165,10 @@ pub fn run(options: &Options) -> Result<(), NoWindow> {
     let watch = Watch::new(&experiment, (worker, hanger), settings, script, images);
     world.insert_resource(watch);
     world.insert_resource(Interrupted(interrupted));
-    app.run();
-    Ok(())
+    match app.run() {
+        AppExit::Success => Ok(()),
+        AppExit::Error(_) => Err(NoWindow::Broken),
+    }
 }
 
 /// Whether Ctrl-C was pressed where the window was opened from.
@@ -230,9 +235,14 @@ fn attend(
         && let Some(file) = watch.file.clone()
     {
         let name = file.display().to_string();
-        watch.open(&name);
-        if watch.problem.is_none() {
-            watch.tell("the file has changed: opened again");
+        if watch.unsaved {
+            watch.changed_on_disk = true;
+            watch.leaving = Some(dialogs::Leaving::Open(name));
+        } else {
+            watch.open(&name);
+            if watch.problem.is_none() {
+                watch.tell("the file has changed: opened again");
+            }
         }
     }
     watch.attend_recording();
@@ -246,7 +256,9 @@ fn attend(
         if let Some(window) = window {
             watch.settings.window = (window.width(), window.height());
         }
-        watch.settings.save();
+        if !watch.script.was_given() {
+            watch.settings.save();
+        }
         if let Some(mut recording) = watch.recording.take() {
             recording.stop();
             recording.wait();

@@ -102,6 +102,7 @@ struct Frames {
 /// What is done without hands.
 #[derive(Default)]
 pub struct Script {
+    given: bool,
     acts: std::collections::VecDeque<Act>,
     log: Option<std::fs::File>,
     began: Option<Instant>,
@@ -132,12 +133,18 @@ impl Script {
                 .from_str(&text)
                 .map_err(|why| format!("{at}:{why}"))?;
             read.acts = acts.into();
+            read.given = true;
         }
         if let Some(path) = log {
             let file = std::fs::File::create(path);
             read.log = Some(file.map_err(|why| format!("cannot write {}: {why}", path.display()))?);
         }
         Ok(read)
+    }
+
+    /// Whether there was a script.
+    pub fn was_given(&self) -> bool {
+        self.given
     }
 
     /// Whether there is something left to do.
@@ -227,7 +234,7 @@ fn is_done(world: &mut World, watch: &mut Watch, act: &Act, elapsed: Duration) -
             return watch.seen.as_ref().is_some_and(|seen| seen.step >= total);
         }
         Act::Rest => return watch.moment.as_ref().is_some_and(|moment| !moment.moving),
-        Act::Recorded => return watch.recording.is_none(),
+        Act::Recorded => return watch.recording.is_none() && watch.then.is_empty(),
         Act::Screenshot(path) => return screenshot(world, watch, path, elapsed),
         // What follows is done at once.
         Act::Play => {
@@ -285,7 +292,7 @@ fn is_done(world: &mut World, watch: &mut Watch, act: &Act, elapsed: Duration) -
             let middle = bevy_egui::egui::vec2((x * nx as f64) as f32, (y * ny as f64) as f32);
             watch.tools.flat.middle = middle;
         }
-        Act::Take(tool) => watch.tools.tool = *tool,
+        Act::Take(tool) => watch.take_tool(*tool),
         Act::Gallery(open) => watch.open.gallery = *open,
         Act::Keys(open) => watch.open.keys = *open,
         Act::RecordDialog(open) => watch.open.record = *open,

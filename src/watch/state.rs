@@ -1,5 +1,6 @@
 //! What the window knows, and what it does with what the threads give it.
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -14,14 +15,16 @@ use super::panel::PanelState;
 use super::recording::{Ended, Running};
 use super::script::Script;
 use super::settings::Settings;
-use super::tools::Tools;
+use super::tools::{Tool, Tools};
 use super::view3d;
 use super::worker::{Order, Pace, Seen, Worker};
-use crate::scenario::{Draping, Experiment, Origin, Scenario, ViewSpec};
+use crate::record::write_whole;
+use crate::scenario::{Beside, Draping, Experiment, Origin, Scenario, ViewSpec};
 use crate::session::overlay::{self, Field};
 use crate::session::save::save;
 use crate::studio::cloth::image_of_levels;
 use crate::studio::mips::Kind;
+use crate::studio::offscreen::most_pixels;
 
 /// What the draped cloth depends on.
 type HangsBy = (Option<Draping>, ViewSpec, (usize, usize), u64);
@@ -79,6 +82,10 @@ pub struct Watch {
     pub record_form: Option<RecordForm>,
     /// What is to be done once it is clear whether to save.
     pub leaving: Option<Leaving>,
+    /// Whether the question is about the file having changed.
+    pub changed_on_disk: bool,
+    /// What is to be done once the scenario is saved.
+    pub after_save: Option<Leaving>,
     /// Whether the window is to close.
     pub closing: bool,
     /// How fast it plays; none before anyone has said.
@@ -89,7 +96,24 @@ pub struct Watch {
     sent: u64,
     hangs_by: Option<HangsBy>,
     /// The moment whose surroundings stand in the studio.
-    furnished: Option<u64>,
+    furnished: Option<(u64, bool)>,
+    /// Where the scenario was opened from.
+    origin: Origin,
+    /// The edits at which the process will have made the last change that it makes itself.
+    asked: u64,
+    /// What is to be done as soon as the process has made every change.
+    pub then: Vec<Then>,
+    /// The scenario as it was opened or saved last.
+    kept: Scenario,
+}
+
+/// What waits for the process to have made every change.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Then {
+    /// Save to a file.
+    Save(PathBuf),
+    /// Record.
+    Record(RecordForm),
 }
 
 /// Windows over the others.
@@ -152,6 +176,8 @@ impl Watch {
             thumbnails: std::collections::BTreeMap::new(),
             record_form: None,
             leaving: None,
+            changed_on_disk: false,
+            after_save: None,
             closing: false,
             pace: None,
             moves: false,
@@ -159,6 +185,10 @@ impl Watch {
             sent: 0,
             hangs_by: None,
             furnished: None,
+            origin: Origin::Memory,
+            asked: 0,
+            then: Vec::new(),
+            kept: experiment.scenario.clone(),
         };
         watch.has_opened(experiment);
         watch
@@ -166,13 +196,22 @@ impl Watch {
 
     fn has_opened(&mut self, experiment: &Experiment) {
         self.edit = experiment.scenario.clone();
+        self.kept = experiment.scenario.clone();
+        self.origin = experiment.origin.clone();
+        self.asked = 0;
+        self.then.clear();
         self.name = experiment.name.clone();
         self.file = match &experiment.origin {
             Origin::File(file) => Some(file.clone()),
             _ => None,
         };
         self.settings.last = Some(match &self.file {
-            Some(file) => file.display().to_string(),
+            // From another folder it is to be found as well.
+            Some(file) => file
+                .canonicalize()
+                .unwrap_or(file.clone())
+                .display()
+                .to_string(),
             None => experiment.name.clone(),
         });
         let watched = self.files.watch(self.file.as_deref());
@@ -225,8 +264,15 @@ impl Watch {
     /// Orders a change that the process makes itself.
     pub fn order_edit(&mut self, order: Order) {
         self.sent += 1;
-        self.unsaved = true;
+        self.asked = self.sent;
         self.worker.order(order);
+    }
+
+    /// Whether the scenario that the panel shows lacks a change that the process is making: one that was
+    /// made on top of it would undo that.
+    pub fn must_wait(&self) -> bool {
+        let seen = self.seen.as_ref().filter(|seen| seen.opened == self.opened);
+        seen.is_none_or(|seen| seen.edits < self.asked)
     }
 
     /// Whether the process has done everything that it was told to change.
@@ -246,44 +292,73 @@ impl Watch {
         self.hanger.act(Deed::Hang(Box::new(self.edit.clone())));
     }
 
-    /// The scenario as the process has it, as a file says it.
-    pub fn text(&self) -> String {
-        save(
-            self.seen
-                .as_ref()
-                .map_or(&self.edit, |seen| &seen.experiment.scenario),
-        )
-    }
-
-    /// What the text says, where the window's files lie: what is recorded.
+    /// What the text of the scenario says, where the window's files lie: what is recorded.
     ///
     /// # Errors
     /// What is wrong with it, which should never be.
     pub fn as_saved(&self) -> Result<Experiment, String> {
-        let origin = self
-            .seen
-            .as_ref()
-            .map_or(Origin::Memory, |seen| seen.experiment.origin.clone());
         let name = format!("{}.ron", self.name);
-        Experiment::parse(&name, origin, self.text()).map_err(|why| why.to_string())
+        let text = save(&self.edit);
+        Experiment::parse(&name, self.origin.clone(), text).map_err(|why| why.to_string())
     }
 
-    /// Saves the scenario.
+    /// Saves the scenario, as soon as the process has made every change.
     pub fn save_to(&mut self, file: PathBuf) {
-        match std::fs::write(&file, self.text()) {
-            Ok(()) => {
-                self.tell(format!("saved {}", file.display()));
-                self.unsaved = false;
-                if let Some(stem) = file.file_stem().and_then(|stem| stem.to_str()) {
-                    self.name = stem.into();
-                }
-                self.settings.last = Some(file.display().to_string());
-                self.files.ignore_own_change();
-                let _ = self.files.watch(Some(&file));
-                self.file = Some(file);
-            }
-            Err(why) => self.problem = Some(format!("cannot write {}: {why}", file.display())),
+        if !self.is_in_step() {
+            self.then.push(Then::Save(file));
+            return;
         }
+        if let Err(why) = self.write(&file) {
+            self.leaving = None;
+            self.problem = Some(why);
+            return;
+        }
+        self.tell(format!("saved {}", file.display()));
+        self.kept = self.edit.clone();
+        self.unsaved = false;
+        if let Some(stem) = file.file_stem().and_then(|stem| stem.to_str()) {
+            self.name = stem.into();
+        }
+        let whole = file.canonicalize().unwrap_or(file.clone());
+        self.settings.last = Some(whole.display().to_string());
+        self.files.ignore_own_change();
+        if let Err(why) = self.files.watch(Some(&file)) {
+            self.tell(format!(
+                "saved; changes of the file will not be seen: {why}"
+            ));
+        }
+        self.origin = Origin::File(file.clone());
+        self.worker.order(Order::Origin(self.origin.clone()));
+        self.file = Some(file);
+        if let Some(leaving) = self.after_save.take() {
+            self.go(leaving);
+        }
+    }
+
+    /// Writes the scenario, and the pictures and drafts beside it that it names.
+    fn write(&self, file: &std::path::Path) -> Result<(), String> {
+        let folder = file.parent().unwrap_or(std::path::Path::new(""));
+        let (from, to) = (Beside::of(&self.origin), Beside::Folder(folder.into()));
+        for (name, _, _) in self.edit.pictures() {
+            if std::path::Path::new(name).is_absolute() {
+                continue;
+            }
+            let bytes = from.read(name).map_err(|why| format!("{name}: {why}"))?;
+            let there = to.path(name);
+            match std::fs::read(&there) {
+                Ok(old) if old == bytes => {}
+                Ok(_) => {
+                    return Err(format!(
+                        "{} is another file than the one that this scenario names: save into another folder",
+                        there.display()
+                    ));
+                }
+                Err(_) => write_whole(&there, |file| file.write_all(&bytes))
+                    .map_err(|why| why.to_string())?,
+            }
+        }
+        let text = save(&self.edit);
+        write_whole(file, |file| file.write_all(text.as_bytes())).map_err(|why| why.to_string())
     }
 
     /// Saves where it was saved before, or asks where.
@@ -292,6 +367,33 @@ impl Watch {
             Some(file) => self.save_to(file),
             None => self.files.ask(Wanted::SaveAs, &self.name),
         }
+    }
+
+    /// Takes another tool, and lets go of what the old one held.
+    pub fn take_tool(&mut self, tool: Tool) {
+        if self.tools.held.take().is_some() {
+            self.hanger.act(Deed::LetGo);
+        }
+        self.tools.path.clear();
+        self.tools.from = None;
+        self.tools.to = None;
+        self.tools.tool = tool;
+    }
+
+    /// Steps a second that it plays with.
+    pub fn speed(&self, total: u64) -> f64 {
+        let most = total.max(2) as f64;
+        match self.pace {
+            Some(Pace::PerSecond(speed)) => speed.clamp(1.0, most),
+            Some(Pace::PerFrame(steps)) => (60.0 * steps as f64).clamp(1.0, most),
+            None => (total as f64 / 20.0).max(1.0),
+        }
+    }
+
+    /// Plays at another speed.
+    pub fn set_pace(&mut self, pace: Pace) {
+        self.pace = Some(pace);
+        self.worker.order(Order::Pace(pace));
     }
 
     /// Shows a field over the cloth, or none.
@@ -312,9 +414,25 @@ pub fn receive(world: &mut World) {
         if let Some(moment) = watch.hanger.take() {
             take_moment(world, watch, moment);
         }
-        if watch.worker.has_died() && watch.problem.is_none() {
+        if watch.is_in_step() {
+            for then in std::mem::take(&mut watch.then) {
+                match then {
+                    Then::Save(file) => watch.save_to(file),
+                    Then::Record(form) => {
+                        if let Err(why) = watch.start_recording(&form) {
+                            watch.problem = Some(why);
+                        }
+                    }
+                }
+            }
+        }
+        if let Some(why) = watch.hanger.problem() {
+            watch.problem = Some(format!("the cloth cannot be draped: {why}"));
+        }
+        if (watch.worker.has_died() || watch.hanger.has_died()) && watch.problem.is_none() {
             watch.problem = Some(
-                "the process has broken off; save the scenario and open it again to go on".into(),
+                "the process has broken off; save the scenario, close the window and open it again"
+                    .into(),
             );
         }
     });
@@ -323,6 +441,15 @@ pub fn receive(world: &mut World) {
 fn take_seen(world: &mut World, watch: &mut Watch, seen: Seen) {
     if seen.opened != watch.opened {
         // The last of a cloth that is no longer there.
+        return;
+    }
+    let most = most_pixels(world);
+    let longest = seen.sides[0].width.max(seen.sides[0].height);
+    if longest > most {
+        watch.problem = Some(format!(
+            "this cloth is {longest} cells long, and the graphics driver shows at most {most}: record it instead"
+        ));
+        watch.seen = Some(seen);
         return;
     }
     let front = &seen.sides[0];
@@ -348,6 +475,7 @@ fn take_seen(world: &mut World, watch: &mut Watch, seen: Seen) {
         if watch.edit != seen.experiment.scenario {
             watch.edit = seen.experiment.scenario.clone();
         }
+        watch.unsaved = watch.edit != watch.kept;
         let by = hangs_by(&watch.edit);
         if watch.hangs_by.as_ref() != Some(&by) {
             watch.hang();
@@ -379,9 +507,10 @@ fn put(world: &mut World, handle: &Handle<Image>, image: Image) {
 }
 
 fn take_moment(world: &mut World, watch: &mut Watch, moment: Moment) {
-    if watch.furnished != Some(moment.hung) {
+    let stands = (moment.hung, moment.settled);
+    if watch.furnished != Some(stands) {
         let first = watch.furnished.is_none();
-        watch.furnished = Some(moment.hung);
+        watch.furnished = Some(stands);
         let view = watch.edit.view.clone();
         let subject = crate::studio::camera::Subject::clone(&moment.subject);
         view3d::furnish(world, &view, subject, &moment.furniture);

@@ -248,7 +248,7 @@ pub struct Tools {
     pub from: Option<Place>,
     /// Where it ends now.
     pub to: Option<Place>,
-    /// Where the hand holds the cloth, and how far that is from the camera, m.
+    /// Where the hand holds the cloth: on it (shares), and in space (m).
     pub held: Option<(Place, DVec3)>,
     /// Whether creases fold towards the front.
     pub valley: bool,

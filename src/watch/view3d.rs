@@ -116,8 +116,6 @@ pub struct Hit {
     pub uv: (f64, f64),
     /// Where in space, m.
     pub place: DVec3,
-    /// Whether it is the back that is seen.
-    pub is_back: bool,
 }
 
 /// Where a ray meets the cloth.
@@ -131,7 +129,6 @@ pub fn hit(front: &Fine, from: DVec3, way: DVec3) -> Option<Hit> {
     Some(Hit {
         uv: (uv.x, uv.y),
         place: from + hit.distance * way,
-        is_back: hit.from_back,
     })
 }
 
@@ -248,6 +245,7 @@ pub fn furnish(world: &mut World, view: &ViewSpec, subject: Subject, furniture: 
         {
             perspective.fov = view.field_of_view.to_radians() as f32;
         }
+        view3d.field_of_view = view.field_of_view;
         view3d.subject = Some(subject);
         view3d.touch();
     });

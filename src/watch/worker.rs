@@ -14,7 +14,7 @@ use bevy::prelude::World;
 use crate::DyeingPlugins;
 use crate::cloth::Cloth;
 use crate::pattern::Stroke;
-use crate::scenario::{Experiment, Scenario};
+use crate::scenario::{Experiment, Origin, Scenario};
 use crate::schedule::ProcessClock;
 use crate::session::Session;
 use crate::session::course::Course;
@@ -73,6 +73,8 @@ pub enum Order {
     Overlay(Option<(Field, overlay::Seen)>),
     /// Show what lies below a line.
     Cut(Option<Cut>),
+    /// The scenario lies somewhere else from now on.
+    Origin(Origin),
     /// End.
     Quit,
 }
@@ -137,8 +139,6 @@ pub struct Seen {
     pub undo: [Option<String>; 2],
     /// Why the last order could not be followed.
     pub problem: Option<String>,
-    /// Steps a second that were reached.
-    pub speed: f64,
 }
 
 /// Where the thread and the window meet.
@@ -254,7 +254,6 @@ struct Process {
     glimpse: Instant,
     /// How long it took to show it.
     showing: Duration,
-    speed: f64,
     /// Steps that are due but not whole yet.
     due: f64,
 }
@@ -289,7 +288,6 @@ impl Process {
             last: Instant::now(),
             glimpse: Instant::now(),
             showing: Duration::ZERO,
-            speed: 0.0,
             due: 0.0,
         };
         process.redraw();
@@ -410,6 +408,7 @@ impl Process {
             }
             Order::Overlay(overlay) => self.overlay = overlay,
             Order::Cut(cut) => self.cut = cut,
+            Order::Origin(origin) => self.session.lies_at(origin),
             Order::Quit => self.quits = true,
         }
     }
@@ -441,7 +440,6 @@ impl Process {
             // One run at least, however long it took to get ready: else it would never arrive.
             waiting.is_empty() && (runs == 1 || began.elapsed() < SLICE)
         };
-        let before = world.resource::<ProcessClock>().step;
         let mut glimpsed = false;
         let arrived = if self.playing && self.session.has_arrived(world) {
             let elapsed = self.last.elapsed().as_secs_f64();
@@ -469,8 +467,6 @@ impl Process {
             arrived
         };
         let now = world.resource::<ProcessClock>().step;
-        let took = began.elapsed().as_secs_f64().max(1e-6);
-        self.speed = 0.8 * self.speed + 0.2 * (now.saturating_sub(before)) as f64 / took;
         if self.playing && now >= total {
             self.playing = false;
         }
@@ -485,7 +481,7 @@ impl Process {
     /// there are orders. False if it is time to end.
     fn publish(&mut self, orders: &Receiver<Order>, meeting: &Meeting, wake: &dyn Fn()) -> bool {
         let began = Instant::now();
-        let seen = self.seen();
+        let mut seen = self.seen();
         self.glimpse = Instant::now();
         // Drawing took about as long as getting it ready for the renderer.
         self.showing = 2 * began.elapsed();
@@ -503,11 +499,16 @@ impl Process {
                 // An order may be to end.
                 drop(slot);
                 let waiting: Vec<_> = orders.try_iter().collect();
+                let asked = !waiting.is_empty();
                 for order in waiting {
                     self.follow(order);
                 }
                 if self.quits {
                     return false;
+                }
+                if asked {
+                    // What was asked for meanwhile is to be seen as well.
+                    seen = self.seen();
                 }
                 let Ok(again) = meeting.seen.lock() else {
                     return false;
@@ -555,7 +556,6 @@ impl Process {
                 history.redoable().map(|(label, _)| label.to_owned()),
             ],
             problem: self.problem.clone(),
-            speed: self.speed,
         }
     }
 }

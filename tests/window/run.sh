@@ -28,7 +28,6 @@ set -e
 [ "$code" = 2 ] || fail "with a display that is not there the exit code is $code: $said"
 
 # A screen.
-exec 3> >(:)
 screen=""
 for n in $(seq 20 60); do
   [ -e "/tmp/.X$n-lock" ] && continue
@@ -53,6 +52,7 @@ cat > one.ron <<'E2'
     Overlay(Some(AllDye)), Cut((0.1, 0.5), (0.9, 0.5)), Wait(0.5),
     Save("painted.ron"),
     Record("from_window", 4, false), Recorded,
+    Record("draped_window", 2, true), Recorded,
     Undo, Arrive, Undo, Arrive, Undo, Arrive,
     Screenshot("window.png"),
     Quit,
@@ -68,6 +68,10 @@ grep -q "//" painted.ron || fail "no comments in what was saved"
 for frame in from_file/frame_*.png; do
   cmp "$frame" "from_window/$(basename "$frame")" || fail "frames differ"
 done
+"$program" record painted.ron --frames 2 --view draped --out draped_file --quiet 2>/dev/null
+for frame in draped_file/frame_*.png; do
+  cmp "$frame" "draped_window/$(basename "$frame")" || fail "draped frames differ"
+done
 [ -s window.png ] || fail "no screenshot"
 
 echo "= time goes forwards and backwards, and keeps its frames"
@@ -80,7 +84,7 @@ cat > two.ron <<'E2'
 ]
 E2
 watch 240 seikaiha two.ron || fail "the second script did not end well"
-grep "act=Wait(3.0)" acts.log
+grep -q "act=Wait(3.0) step=[1-9]" acts.log || fail "the process did not play"
 
 echo "= keys and mouse"
 cat > three.ron <<'E2'
@@ -112,14 +116,17 @@ wait "$window" || fail "the third script did not end well"
 echo "= a file that changes is opened again, a mistake in it is told and the cloth stays"
 cp painted.ron mine.ron
 cat > four.ron <<'E2'
-[ Pause, Wait(4), Log("broken"), Wait(4), Log("mended"), Wait(1), Screenshot("mistake.png"), Quit ]
+[ Pause, Wait(4), Screenshot("mistake.png"), Log("broken"), Wait(5), Log("mended"), Wait(1), Quit ]
 E2
 watch 240 mine.ron four.ron & window=$!
 for _ in $(seq 100); do grep -qs "act=Pause" acts.log && break; sleep 0.2; done
 sleep 1
 sed 's/cloth: (/clot: (/' painted.ron > mine.ron
+for _ in $(seq 100); do grep -qs "^broken" acts.log && break; sleep 0.2; done
+sed 's/dose: 1/dose: 0.5/' painted.ron > mine.ron
 wait "$window" || fail "the fourth script did not end well"
 grep "act=Wait(4.0)" acts.log | grep -q "problem=true" || fail "the mistake was not told"
+grep "act=Wait(5.0)" acts.log | grep -q "problem=false" || fail "the mended file was not opened again"
 
 echo "= closing while it records leaves a valid recording"
 cat > five.ron <<'E2'

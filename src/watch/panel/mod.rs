@@ -1,6 +1,6 @@
 //! The parameters of a scenario, as a person changes them: plain egui, no systems.
 //!
-//! [`parameters`] and [`weave`] show a scenario and edit it in place; they say what changed, and the app
+//! [`parameters`] and [`weave()`] show a scenario and edit it in place; they say what changed, and the app
 //! begins anew or only looks again. A scenario that passed `check` still passes it after every change: a
 //! row goes no further than is allowed, and [`mend`] moves what hangs together with it.
 
