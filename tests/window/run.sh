@@ -102,7 +102,7 @@ key b
 xdotool mousedown 1; sleep 0.5
 for x in 530 545 560 580; do xdotool mousemove "$x" 345; sleep 0.4; done
 xdotool mouseup 1; sleep 2
-key ctrl+z
+xdotool keydown ctrl; sleep 0.4; key z; xdotool keyup ctrl; sleep 0.4
 key v
 # Turn the draped cloth.
 xdotool mousemove 1000 330; sleep 0.5; xdotool mousedown 1; sleep 0.4
