@@ -1,4 +1,5 @@
-//! Draws the pictures of the gallery: every bundled scenario as it is in the end.
+//! Draws the pictures of the gallery: every bundled scenario as it is in the end, or, where there is nothing
+//! to be seen then, in the middle.
 //!
 //! ```sh
 //! cargo run --release --example draw_thumbnails -- assets/thumbnails
@@ -22,10 +23,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for scenario in bundled() {
         let experiment = Experiment::load(scenario.name)?;
         let steps = experiment.scenario.process.steps();
-        let mut app = dyeing_app(experiment);
-        advance_to(app.world_mut(), steps, |_| true);
-        look(app.world_mut());
-        let picture = app.world().resource::<Picture>();
+        let mut picture = seen(&experiment, steps);
+        if is_blank(&picture) {
+            picture = seen(&experiment, steps / 2);
+        }
         let (width, height) = (picture.width as u32, picture.height as u32);
         let whole = image::RgbImage::from_raw(width, height, picture.rgb.clone())
             .ok_or("a picture has another size than it says")?;
@@ -40,4 +41,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         std::fs::write(folder.join(format!("{}.jpg", scenario.name)), bytes)?;
     }
     Ok(())
+}
+
+fn seen(experiment: &Experiment, step: u64) -> Picture {
+    let mut app = dyeing_app(experiment.clone());
+    advance_to(app.world_mut(), step, |_| true);
+    look(app.world_mut());
+    app.world().resource::<Picture>().clone()
+}
+
+fn is_blank(picture: &Picture) -> bool {
+    let least = picture.rgb.iter().min();
+    let most = picture.rgb.iter().max();
+    least == most
 }

@@ -212,7 +212,7 @@ fn open(window: WindowPlugin) -> Option<App> {
 
 fn start(world: &mut World) {
     // The camera that the panel is drawn with.
-    world.spawn((Camera2d, bevy_egui::PrimaryEguiContext));
+    world.spawn((Camera2d, Msaa::Off, bevy_egui::PrimaryEguiContext));
     view3d::start(world);
 }
 

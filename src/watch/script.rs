@@ -74,6 +74,8 @@ pub enum Act {
     RecordDialog(bool),
     /// Show or hide the parameters.
     Panel(bool),
+    /// Show the weave editor, or the parameters.
+    WeaveEditor(bool),
     /// Show or hide the plots.
     Plots(bool),
     /// Save to a file.
@@ -297,6 +299,7 @@ fn is_done(world: &mut World, watch: &mut Watch, act: &Act, elapsed: Duration) -
         Act::Keys(open) => watch.open.keys = *open,
         Act::RecordDialog(open) => watch.open.record = *open,
         Act::Panel(open) => watch.settings.panel = *open,
+        Act::WeaveEditor(open) => watch.weaves = *open,
         Act::Plots(open) => watch.settings.plots = *open,
         Act::Save(path) => watch.save_to(path.clone()),
         Act::Record(folder, frames, draped) => {

@@ -1,5 +1,7 @@
 //! The studio in the window: drawn into an image that the panel shows, and only when something changed.
 
+use std::time::{Duration, Instant};
+
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::RenderTarget;
 use bevy::math::DVec3;
@@ -42,6 +44,9 @@ pub struct View3d {
     pub moved_by_hand: bool,
     /// Whether it is shown.
     pub is_shown: bool,
+    /// The least time between two pictures of which only the dye differs: where the processor draws, the flat
+    /// cloth would else wait for the draped one.
+    pub apart: Duration,
 }
 
 /// Where the camera stands: around what it looks at.
@@ -183,6 +188,10 @@ pub fn start(world: &mut World) {
         field_of_view: view.field_of_view,
         moved_by_hand: false,
         is_shown: true,
+        apart: match quality {
+            Quality::Software => Duration::from_millis(300),
+            Quality::Fine | Quality::Fast => Duration::ZERO,
+        },
     });
 }
 
@@ -316,8 +325,10 @@ pub fn draw(
     mut images: ResMut<Assets<Image>>,
     mut cameras: Query<(&mut Camera, &mut Transform), Without<ClothSide>>,
     mut drawn: Local<Option<(UVec2, Eye)>>,
+    mut last: Local<Option<Instant>>,
 ) {
     let now = (view.size, view.eye);
+    let stood_still = *drawn == Some(now);
     if *drawn != Some(now) {
         if drawn.is_none_or(|(size, _)| size != view.size)
             && let Some(mut image) = images.get_mut(&view.image)
@@ -328,11 +339,14 @@ pub fn draw(
         view.dirty = view.dirty.max(2);
     }
     if let Ok((mut camera, mut transform)) = cameras.get_mut(view.camera) {
-        camera.set_if_neq_active(view.is_shown && view.dirty > 0);
+        let waits = stood_still && last.is_some_and(|last| last.elapsed() < view.apart);
+        let draws = view.is_shown && view.dirty > 0 && !waits;
+        camera.set_if_neq_active(draws);
         transform.set_if_neq(view.eye.transform());
-    }
-    if view.is_shown {
-        view.dirty = view.dirty.saturating_sub(1);
+        if draws {
+            view.dirty -= 1;
+            *last = Some(Instant::now());
+        }
     }
 }
 

@@ -23,7 +23,7 @@ use crate::session::overlay::{self, Field, Overlay};
 use crate::session::paint::Paint;
 use crate::session::section::Section;
 use crate::studio::mips::{self, Kind};
-use crate::texture::{OtherSide, Picture, Relief, Scale, Texture, see_both_sides};
+use crate::texture::{OtherSide, Picture, Relief, Scale, change_look, see_both_sides};
 
 /// How fast the process plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -233,6 +233,33 @@ const LONGEST_FRAME: f64 = 0.1;
 /// more than a fifth of the time.
 const GLIMPSE: Duration = Duration::from_millis(150);
 
+/// The finest that the back and the reliefs are drawn: only the draped cloth shows them.
+const FINEST_BACK: u32 = 2;
+
+/// Draws the cloth of a world anew, at so many pixels a cell; returns the reliefs of front and back.
+fn redrawn(world: &mut World, session: &mut Session, scale: u32) -> [Arc<Shown>; 2] {
+    let coarse = scale.min(FINEST_BACK);
+    world.insert_resource(Scale(scale));
+    // This draws the back as well, if it was drawn before; it is drawn more coarsely below.
+    world.remove_resource::<OtherSide>();
+    change_look(world, session.scenario().look.clone());
+    world.insert_resource(Scale(coarse));
+    see_both_sides(world);
+    world.insert_resource(Scale(scale));
+    session.show(world);
+    let cloth = world.resource::<Cloth>();
+    let scenario = session.scenario();
+    let relief = |cloth: &Cloth| {
+        let relief = Relief::new(cloth, &scenario.look.yarn, scenario.seed, coarse as usize);
+        Shown::new(&relief.normals(), relief.width, relief.height, Kind::Normal)
+    };
+    let turned = cloth.turned_over();
+    match scenario.look.side {
+        crate::scenario::Side::Face => [relief(cloth), relief(&turned)],
+        crate::scenario::Side::Back => [relief(&turned), relief(cloth)],
+    }
+}
+
 struct Process {
     app: App,
     session: Session,
@@ -248,6 +275,8 @@ struct Process {
     problem: Option<String>,
     /// Whether it is time to end.
     quits: bool,
+    /// Threads for what the window waits for.
+    all: Option<rayon::ThreadPool>,
     /// When and where the last frame of playing was.
     last: Instant,
     /// When something on the way was shown last.
@@ -285,6 +314,7 @@ impl Process {
             reliefs: [nothing.clone(), nothing],
             problem: None,
             quits: false,
+            all: rayon::ThreadPoolBuilder::new().build().ok(),
             last: Instant::now(),
             glimpse: Instant::now(),
             showing: Duration::ZERO,
@@ -294,26 +324,13 @@ impl Process {
         process
     }
 
-    /// Draws both sides, and their relief, anew.
+    /// Draws both sides, and their relief, anew. The window waits for nothing else then, so all of the
+    /// machine takes part.
     fn redraw(&mut self) {
-        let world = self.app.world_mut();
-        world.insert_resource(Scale(self.scale));
-        let look = self.session.scenario().look.clone();
-        crate::texture::change_look(world, look);
-        see_both_sides(world);
-        self.session.show(world);
-        let world = self.app.world();
-        let cloth = world.resource::<Cloth>();
-        let scenario = self.session.scenario();
-        let scale = world.resource::<Texture>().scale;
-        let relief = |cloth: &Cloth| {
-            let relief = Relief::new(cloth, &scenario.look.yarn, scenario.seed, scale);
-            Shown::new(&relief.normals(), relief.width, relief.height, Kind::Normal)
-        };
-        let turned = cloth.turned_over();
-        self.reliefs = match scenario.look.side {
-            crate::scenario::Side::Face => [relief(cloth), relief(&turned)],
-            crate::scenario::Side::Back => [relief(&turned), relief(cloth)],
+        let (world, session, scale) = (self.app.world_mut(), &mut self.session, self.scale);
+        self.reliefs = match &self.all {
+            Some(all) => all.install(|| redrawn(world, session, scale)),
+            None => redrawn(world, session, scale),
         };
     }
 
