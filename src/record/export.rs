@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use bevy::app::App;
 
 use super::RecordError;
-use super::folder::write_whole;
+use super::write_whole;
 use crate::cloth::Cloth;
 use crate::memory::{self, Use};
 use crate::scenario::units::MOST_STEPS;

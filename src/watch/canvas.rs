@@ -140,12 +140,30 @@ fn paint_on(response: &Response, watch: &mut Watch, place: Option<Place>, cells:
         watch.tools.path.push(place);
     }
     let ends = response.drag_stopped_by(PointerButton::Primary) || response.clicked();
-    if ends && !watch.tools.path.is_empty() {
-        let path = std::mem::take(&mut watch.tools.path);
-        let brush = watch.tools.brush;
-        let stroke = brush.stroke(&path, cells);
-        watch.order_edit(Order::Paint(brush.paint(), stroke));
+    if ends {
+        end_stroke(watch, cells);
     }
+}
+
+/// Orders the stroke that was painted, if there is one.
+fn end_stroke(watch: &mut Watch, cells: (usize, usize)) {
+    let path = std::mem::take(&mut watch.tools.path);
+    if path.is_empty() {
+        return;
+    }
+    let brush = watch.tools.brush;
+    let stroke = brush.stroke(&path, cells);
+    watch.order_edit(Order::Paint(brush.paint(), stroke));
+}
+
+/// Whether a brush has left the cloth, or come over a fold to a place that is far along it: a stroke ends
+/// there.
+fn is_over_edge(watch: &Watch, place: Option<Place>, (nx, ny): (usize, usize)) -> bool {
+    let Some((lx, ly)) = watch.tools.path.last() else {
+        return false;
+    };
+    let far = 6.0 * watch.tools.brush.cells((nx, ny)) + 0.1 * nx.max(ny) as f64;
+    place.is_none_or(|(x, y)| libm::hypot((x - lx) * nx as f64, (y - ly) * ny as f64) > far)
 }
 
 /// What is being drawn on the flat cloth.
@@ -406,6 +424,9 @@ fn use_draped(ui: &Ui, response: &Response, watch: &mut Watch, view: &View3d, sp
         Tool::Brush => {
             let cells = watch.seen.as_ref().map_or((1, 1), |seen| seen.cells);
             let place = hit_at(watch, view, space, at).map(|hit| hit.uv);
+            if is_over_edge(watch, place, cells) {
+                end_stroke(watch, cells);
+            }
             paint_on(response, watch, place, cells);
         }
         Tool::Look | Tool::Cut => {}
