@@ -68,9 +68,10 @@ pub fn spawn(world: &mut World, view: &ViewSpec, subject: &Subject, quality: Qua
         Quality::Software => (1, 1024),
     };
     world.insert_resource(DirectionalLightShadowMap { size });
-    // As far as the narrowest camera may stand.
+    // As far as a camera stands that sees the whole subject, and a little more: a shadow map that covers
+    // more is coarser.
     let narrow = 1.0 / libm::tan(0.5 * view.field_of_view.to_radians());
-    let far = (20.0 * subject.radius * narrow.max(1.0)) as f32;
+    let far = (subject.radius * (2.5 * narrow + 6.0)) as f32;
     for way in lamp_ways(view.light, parts) {
         world.spawn((
             Lamp,
